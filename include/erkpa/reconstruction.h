@@ -1,0 +1,70 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <erkpa/implicit_field.h>
+#include <erkpa/marching_cubes.h>
+#include <erkpa/normals.h>
+#include <erkpa/oriented_points.h>
+#include <erkpa/triangle_mesh.h>
+
+#include <functional>
+
+namespace erkpa
+{
+
+/** \brief All settings of a reconstruction; every default of the library stands in these structs. */
+struct Options
+{
+  NormalOptions normals;
+  FieldOptions field;
+  PolygonizerOptions polygonizer;
+};
+
+/** \brief What a reconstruction did, stage by stage. */
+struct Report
+{
+  PointCounts points;
+  Orientation orientation = Orientation::NONE;
+  int k = 0;                      ///< neighbours of the support in force; 0 with a constant radius
+  double radius = 0.0;            ///< constant support radius in force; 0 with k
+  double spacing = 0.0;           ///< typical distance between neighbouring points
+  PolygonizerReport polygonizer;
+  MeshTopology topology;
+  std::size_t vertices = 0;
+  std::size_t triangles = 0;
+  double seconds_points = 0.0;    ///< gathering the points and building the search tree
+  double seconds_normals = 0.0;   ///< estimating and orienting normals
+  double seconds_field = 0.0;     ///< settling the support
+  double seconds_polygonizer = 0.0; ///< meshing
+  double seconds_total = 0.0;
+
+  /** \brief Mean number of nodes in the support of an evaluation. */
+  double
+  meanNodesPerEvaluation () const
+  {
+    return polygonizer.evaluations > 0
+               ? static_cast<double> (polygonizer.support_nodes) / static_cast<double> (polygonizer.evaluations)
+               : 0.0;
+  }
+};
+
+/** \brief Makes the search over the nodes once they are known. */
+using SearchFactory = std::function<NeighborSearch::ConstPtr (const OrientedPoints &)>;
+
+/** \brief The first half of the way: cloud -> oriented points -> field.
+  * \param[in] view the cloud
+  * \param[in] options settings
+  * \param[in] make_search the search to use, or empty for a KdTreeFLANN
+  * \param[out] field the field; null on error
+  * \param[in,out] report filled in
+  */
+Outcome
+buildField (const PointView &view, const Options &options, const SearchFactory &make_search,
+            ImplicitField::ConstPtr &field, Report &report);
+
+/** \brief The second half: field -> mesh, in the input's frame. */
+Outcome
+buildMesh (const ImplicitField &field, const Options &options, TriangleMesh &mesh, Report &report,
+           const ProgressCallback &progress = {});
+
+} // namespace erkpa
