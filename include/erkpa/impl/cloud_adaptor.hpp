@@ -1,0 +1,199 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <erkpa/reconstruction.h>
+
+#include <pcl/PolygonMesh.h>
+#include <pcl/console/print.h>
+#include <pcl/conversions.h>
+#include <pcl/point_cloud.h>
+#include <pcl/point_traits.h>
+#include <pcl/point_types.h>
+#include <pcl/search/search.h>
+
+#include <limits>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace erkpa
+{
+
+/** \brief The attributes of a point that a mesh carries on. */
+enum class Attributes
+{
+  NONE,
+  COLOR,    ///< r, g, b
+  INTENSITY ///< intensity
+};
+
+template <typename PointT>
+constexpr bool
+hasNormal ()
+{
+  return pcl::traits::has_field<PointT, pcl::fields::normal_x>::value;
+}
+
+template <typename PointT>
+constexpr Attributes
+kindOfAttributes ()
+{
+  if constexpr (pcl::traits::has_color<PointT>::value)
+    return Attributes::COLOR;
+  else if constexpr (pcl::traits::has_field<PointT, pcl::fields::intensity>::value)
+    return Attributes::INTENSITY;
+  else
+    return Attributes::NONE;
+}
+
+/** \brief A cloud of PCL as the core sees it. */
+template <typename PointT>
+PointView
+viewCloud (const pcl::PointCloud<PointT> &cloud)
+{
+  PointView view;
+  view.size = cloud.size ();
+  view.stride = sizeof (PointT);
+  if (cloud.empty ())
+    return view;
+  view.position = cloud.points.front ().data;
+  if constexpr (hasNormal<PointT> ())
+    view.normal = cloud.points.front ().data_n;
+  if constexpr (kindOfAttributes<PointT> () == Attributes::COLOR)
+  {
+    view.channels = 3;
+    view.attributes.reserve (3 * cloud.size ());
+    for (const PointT &p : cloud.points)
+      view.attributes.insert (view.attributes.end (), { float (p.r), float (p.g), float (p.b) });
+  }
+  else if constexpr (kindOfAttributes<PointT> () == Attributes::INTENSITY)
+  {
+    view.channels = 1;
+    view.attributes.reserve (cloud.size ());
+    for (const PointT &p : cloud.points)
+      view.attributes.push_back (static_cast<float> (p.intensity));
+  }
+  return view;
+}
+
+/** \brief Neighbour queries through a search of PCL that the user chose. */
+template <typename PointT>
+class PclSearch : public NeighborSearch
+{
+public:
+  PclSearch (typename pcl::search::Search<PointT>::Ptr tree, const OrientedPoints &points) : tree_ (std::move (tree))
+  {
+    const typename pcl::PointCloud<PointT>::Ptr cloud (new pcl::PointCloud<PointT>);
+    cloud->resize (points.size ());
+    for (std::size_t i = 0; i < points.size (); ++i)
+      (*cloud)[i].getVector3fMap () = points.positions[i];
+    tree_->setInputCloud (cloud);
+  }
+
+  void
+  nearestK (const Eigen::Vector3f &x, int k, std::vector<int> &indices,
+            std::vector<float> &squared_distances) const override
+  {
+    tree_->nearestKSearch (query (x), k, indices, squared_distances);
+  }
+
+  void
+  withinRadius (const Eigen::Vector3f &x, double radius, std::vector<int> &indices,
+                std::vector<float> &squared_distances) const override
+  {
+    tree_->radiusSearch (query (x), radius, indices, squared_distances);
+  }
+
+private:
+  static PointT
+  query (const Eigen::Vector3f &x)
+  {
+    PointT point;
+    point.getVector3fMap () = x;
+    return point;
+  }
+
+  typename pcl::search::Search<PointT>::Ptr tree_;
+};
+
+template <typename PointT>
+NeighborSearch::ConstPtr
+makePclSearch (const typename pcl::search::Search<PointT>::Ptr &tree, const OrientedPoints &points)
+{
+  return std::make_shared<PclSearch<PointT>> (tree, points);
+}
+
+/** \brief Vertices in a point type of PCL; fields the mesh does not know keep their defaults. */
+template <typename PointT>
+void
+toPointCloud (const TriangleMesh &mesh, pcl::PointCloud<PointT> &cloud)
+{
+  cloud.resize (mesh.vertices.size ());
+  cloud.is_dense = true;
+  for (std::size_t i = 0; i < mesh.vertices.size (); ++i)
+  {
+    PointT &point = cloud[i];
+    point = PointT ();
+    point.getVector3fMap () = mesh.vertices[i];
+    if constexpr (hasNormal<PointT> ())
+      point.getNormalVector3fMap () = mesh.normals[i];
+    if constexpr (kindOfAttributes<PointT> () == Attributes::COLOR)
+    {
+      const auto byte = [] (float value) {
+        return static_cast<std::uint8_t> (value < 0.0f ? 0.0f : value > 255.0f ? 255.0f : value + 0.5f);
+      };
+      if (mesh.channels == 3)
+      {
+        point.r = byte (mesh.attributes[3 * i]);
+        point.g = byte (mesh.attributes[3 * i + 1]);
+        point.b = byte (mesh.attributes[3 * i + 2]);
+      }
+    }
+    else if constexpr (kindOfAttributes<PointT> () == Attributes::INTENSITY)
+      point.intensity = mesh.channels == 1 ? mesh.attributes[i] : 0.0f;
+  }
+}
+
+inline void
+toPolygons (const TriangleMesh &mesh, std::vector<pcl::Vertices> &polygons)
+{
+  polygons.resize (mesh.triangles.size ());
+  for (std::size_t i = 0; i < mesh.triangles.size (); ++i)
+    polygons[i].vertices.assign (mesh.triangles[i].begin (), mesh.triangles[i].end ());
+}
+
+template <typename PointT>
+void
+toPolygonMeshOf (const TriangleMesh &mesh, const pcl::PCLHeader &header, pcl::PolygonMesh &output)
+{
+  pcl::PointCloud<PointT> cloud;
+  toPointCloud (mesh, cloud);
+  pcl::toPCLPointCloud2 (cloud, output.cloud);
+  output.header = output.cloud.header = header;
+  toPolygons (mesh, output.polygons);
+}
+
+/** \brief The mesh as PCL hands it on: normals always, colour or intensity where the input had them. */
+inline void
+toPolygonMesh (const TriangleMesh &mesh, Attributes attributes, const pcl::PCLHeader &header,
+               pcl::PolygonMesh &output)
+{
+  switch (attributes)
+  {
+    case Attributes::NONE:
+      toPolygonMeshOf<pcl::PointNormal> (mesh, header, output);
+      break;
+    case Attributes::COLOR:
+      toPolygonMeshOf<pcl::PointXYZRGBNormal> (mesh, header, output);
+      break;
+    case Attributes::INTENSITY:
+      toPolygonMeshOf<pcl::PointXYZINormal> (mesh, header, output);
+      break;
+  }
+}
+
+/** \brief Tell the user, once per call, what was done about points that are not as they should be. */
+void
+reportPoints (const std::string &class_name, const Report &report, const Options &options);
+
+} // namespace erkpa

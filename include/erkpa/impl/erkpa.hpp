@@ -1,0 +1,161 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+// Everything that touches the memory of a pcl::PointCloud stands in this header, so that it is compiled with the
+// caller's flags: a program built with AVX lays out and frees Eigen-aligned memory differently from the library.
+
+#include <erkpa/impl/cloud_adaptor.hpp>
+
+#include <pcl/console/print.h>
+
+#include <exception>
+#include <utility>
+
+namespace erkpa
+{
+
+template <typename PointNT>
+template <typename StepT>
+bool
+ERKPA<PointNT>::guarded (StepT step)
+{
+  try
+  {
+    outcome_ = step ();
+  }
+  catch (const std::bad_alloc &)
+  {
+    outcome_ = { Status::INTERNAL_ERROR, "out of memory: use a larger voxel size or fewer points" };
+  }
+  catch (const std::exception &error)
+  {
+    outcome_ = { Status::INTERNAL_ERROR, error.what () };
+  }
+  if (!outcome_.ok ())
+  {
+    field_.reset ();
+    PCL_ERROR ("[%s::reconstruct] %s.\n", getClassName ().c_str (), outcome_.message.c_str ());
+  }
+  return outcome_.ok ();
+}
+
+template <typename PointNT>
+PointView
+ERKPA<PointNT>::viewOfInput () const
+{
+  PointView view = viewCloud (*input_);
+  view.indices = use_indices_ && !fake_indices_ ? indices_.get () : nullptr;
+  return view;
+}
+
+template <typename PointNT>
+Outcome
+ERKPA<PointNT>::makeField ()
+{
+  field_.reset ();
+  report_ = Report ();
+  if (!input_)
+    return { Status::NO_INPUT, "there is no input cloud: call setInputCloud () first" };
+  if (use_sensor_origin_)
+    options_.normals.view_point = input_->sensor_origin_.template head<3> ().template cast<double> ();
+  SearchFactory make_search;
+  if (tree_)
+    make_search = [this] (const OrientedPoints &points) { return makePclSearch<PointNT> (tree_, points); };
+  const Outcome outcome = buildField (viewOfInput (), options_, make_search, field_, report_);
+  if (outcome.ok ())
+    reportPoints (getClassName (), report_, options_);
+  return outcome;
+}
+
+template <typename PointNT>
+bool
+ERKPA<PointNT>::makeMesh (TriangleMesh &mesh)
+{
+  return guarded ([&] {
+    Outcome outcome = makeField ();
+    if (outcome.ok ())
+      outcome = buildMesh (*field_, options_, mesh, report_, progress_);
+    return outcome;
+  });
+}
+
+template <typename PointNT>
+void
+ERKPA<PointNT>::reconstruct (pcl::PolygonMesh &output)
+{
+  output = pcl::PolygonMesh ();
+  TriangleMesh mesh;
+  const bool made = makeMesh (mesh);
+  const pcl::PCLHeader header = input_ ? input_->header : pcl::PCLHeader ();
+  toPolygonMesh (made ? mesh : TriangleMesh (), kindOfAttributes<PointNT> (), header, output);
+}
+
+template <typename PointNT>
+void
+ERKPA<PointNT>::reconstruct (PointCloud &points, std::vector<pcl::Vertices> &polygons)
+{
+  TriangleMesh mesh;
+  const bool made = makeMesh (mesh); // before points is cleared: it may be the input
+  const pcl::PCLHeader header = input_ ? input_->header : pcl::PCLHeader ();
+  points = PointCloud ();
+  points.header = header;
+  polygons.clear ();
+  if (!made)
+    return;
+  toPointCloud (mesh, points);
+  toPolygons (mesh, polygons);
+}
+
+template <typename PointNT>
+ImplicitField::ConstPtr
+ERKPA<PointNT>::computeField ()
+{
+  guarded ([this] { return makeField (); });
+  return field_;
+}
+
+template <typename PointNT>
+bool
+ERKPA<PointNT>::addSharpEdge (const pcl::ModelCoefficients &coefficients)
+{
+  SharpSurface::ConstPtr surface;
+  const Outcome outcome = makeSharpPlane (coefficients.values, surface);
+  if (!outcome.ok ())
+  {
+    PCL_ERROR ("[%s::addSharpEdge] %s.\n", getClassName ().c_str (), outcome.message.c_str ());
+    return false;
+  }
+  sharp_edges_.push_back (coefficients);
+  options_.field.sharp_surfaces.push_back (surface);
+  return true;
+}
+
+template <typename PointNT>
+bool
+ERKPA<PointNT>::setSharpEdges (const std::vector<pcl::ModelCoefficients> &edges)
+{
+  std::vector<pcl::ModelCoefficients> old_edges;
+  std::vector<SharpSurface::ConstPtr> old_surfaces;
+  old_edges.swap (sharp_edges_);
+  old_surfaces.swap (options_.field.sharp_surfaces);
+  for (const pcl::ModelCoefficients &edge : edges)
+  {
+    if (addSharpEdge (edge))
+      continue;
+    sharp_edges_.swap (old_edges);
+    options_.field.sharp_surfaces.swap (old_surfaces);
+    return false;
+  }
+  return true;
+}
+
+template <typename PointNT>
+void
+ERKPA<PointNT>::setOptions (const Options &options)
+{
+  options_ = options;
+  sharp_edges_.clear ();
+  use_sensor_origin_ = false;
+}
+
+} // namespace erkpa

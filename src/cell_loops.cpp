@@ -1,0 +1,142 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "cell_loops.h"
+
+#include <cstddef>
+
+namespace erkpa
+{
+
+namespace
+{
+
+using Index = std::size_t;
+
+/** \brief Corners and edges of a face, counter-clockwise seen from outside the cell. */
+struct Face
+{
+  std::array<int, 4> corners;
+  std::array<int, 4> edges; // edges[i] joins corners[i] and corners[i + 1]
+};
+
+struct CellTables
+{
+  std::array<CellEdge, 12> edges{};
+  std::array<Face, 6> faces{};
+  std::array<std::array<bool, 12>, 12> share{};
+
+  CellTables ()
+  {
+    for (int axis = 0; axis < 3; ++axis)
+      for (int i = 0; i < 4; ++i)
+      {
+        const int b = 1 << ((axis + 1) % 3), c = 1 << ((axis + 2) % 3);
+        edges[Index (4 * axis + i)] = { (i & 1 ? b : 0) | (i & 2 ? c : 0), axis };
+      }
+    for (int axis = 0; axis < 3; ++axis)
+      for (int high = 0; high < 2; ++high)
+        faces[Index (2 * axis + high)] = makeFace (axis, high != 0);
+    for (const Face &face : faces)
+      for (const int e : face.edges)
+        for (const int other : face.edges)
+          share[Index (e)][Index (other)] = true;
+  }
+
+private:
+  Face
+  makeFace (int axis, bool high) const
+  {
+    const int a = high ? 1 << axis : 0;
+    const int b = 1 << ((axis + 1) % 3), c = 1 << ((axis + 2) % 3);
+    Face face{ { a, high ? a | b : a | c, a | b | c, high ? a | c : a | b }, {} };
+    for (Index i = 0; i < 4; ++i)
+      face.edges[i] = edgeBetween (face.corners[i], face.corners[(i + 1) % 4]);
+    return face;
+  }
+
+  int
+  edgeBetween (int corner, int other) const
+  {
+    for (int e = 0; e < 12; ++e)
+      if (edges[Index (e)].corner == (corner & other) && (1 << edges[Index (e)].axis) == (corner ^ other))
+        return e;
+    return -1;
+  }
+};
+
+const CellTables &
+tables ()
+{
+  static const CellTables cell_tables;
+  return cell_tables;
+}
+
+/** \brief Link the crossings of one face: next[edge where the way round leaves the outside] = edge where it enters. */
+void
+linkFace (const Face &face, const std::array<double, 8> &values, std::array<int, 12> &next)
+{
+  std::array<int, 2> entries{}, exits{};
+  Index entry_count = 0, exit_count = 0;
+  for (Index i = 0; i < 4; ++i)
+  {
+    const bool here = values[Index (face.corners[i])] < 0.0;
+    const bool there = values[Index (face.corners[(i + 1) % 4])] < 0.0;
+    if (here && !there)
+      entries[entry_count++] = face.edges[i];
+    else if (!here && there)
+      exits[exit_count++] = face.edges[i];
+  }
+  if (exit_count == 1)
+    next[Index (exits[0])] = entries[0];
+  if (exit_count != 2)
+    return;
+  // Corner 0 and 2 have one sign, 1 and 3 the other; the saddle's sign is that of the product difference.
+  const double even = values[Index (face.corners[0])] * values[Index (face.corners[2])];
+  const double odd = values[Index (face.corners[1])] * values[Index (face.corners[3])];
+  const bool even_inside = values[Index (face.corners[0])] < 0.0;
+  const bool outside_joined = even_inside ? odd > even : even > odd;
+  // Going round, exits[i] follows entries[i] if the first corner is inside, else it comes before it.
+  const Index own = even_inside ? 0 : 1;
+  const Index partner = outside_joined ? 1 - own : own;
+  next[Index (exits[0])] = entries[partner];
+  next[Index (exits[1])] = entries[1 - partner];
+}
+
+} // namespace
+
+CellEdge
+cellEdge (int edge)
+{
+  return tables ().edges[Index (edge)];
+}
+
+bool
+shareFace (int edge, int other)
+{
+  return tables ().share[Index (edge)][Index (other)];
+}
+
+CellLoops
+traceLoops (const std::array<double, 8> &values)
+{
+  std::array<int, 12> next;
+  next.fill (-1);
+  for (const Face &face : tables ().faces)
+    linkFace (face, values, next);
+  CellLoops loops;
+  for (int start = 0; start < 12; ++start)
+  {
+    if (next[Index (start)] < 0)
+      continue;
+    const auto loop = Index (loops.count++);
+    for (int edge = start; next[Index (edge)] >= 0;)
+    {
+      loops.edges[loop][Index (loops.lengths[loop]++)] = edge;
+      const int following = next[Index (edge)];
+      next[Index (edge)] = -1;
+      edge = following;
+    }
+  }
+  return loops;
+}
+
+} // namespace erkpa

@@ -1,0 +1,176 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "enrichment.h"
+
+#include <Eigen/SVD>
+
+#include <algorithm>
+#include <cmath>
+
+namespace erkpa
+{
+
+namespace
+{
+
+/** \brief The pencil of three planes, if they make one: α θ_a + β θ_b + γ θ_c = 0 with no factor near zero. */
+bool
+pencilOf (const std::array<const SharpPlane *, 3> &planes, double tolerance, Pencil &pencil)
+{
+  Eigen::Matrix<double, 3, 3> normals;
+  const Eigen::Vector3d zero = Eigen::Vector3d::Zero ();
+  for (int i = 0; i < 3; ++i)
+    normals.col (i) = planes[static_cast<std::size_t> (i)]->thetaGradient (zero);
+  const Eigen::JacobiSVD<Eigen::Matrix3d> svd (normals, Eigen::ComputeFullV);
+  constexpr double PARALLEL = 0.05; // about 3 degrees: planes found by segmentation are not exact
+  if (svd.singularValues ()[2] > PARALLEL || svd.singularValues ()[1] < PARALLEL)
+    return false;
+  const Eigen::Vector3d factors = svd.matrixV ().col (2);
+  // A point on two of the planes: there the third must vanish too, else the three bound a prism.
+  const Eigen::Vector3d offsets (planes[0]->theta (zero), planes[1]->theta (zero), planes[2]->theta (zero));
+  if (std::abs (factors.dot (offsets)) > tolerance)
+    return false;
+  if (factors.cwiseAbs ().minCoeff () < 0.1)
+    return false;
+  pencil.scale_a = factors[0];
+  pencil.scale_b = -factors[1];
+  return true;
+}
+
+} // namespace
+
+std::vector<Pencil>
+findPencils (const std::vector<SharpSurface::ConstPtr> &surfaces, double tolerance)
+{
+  std::vector<const SharpPlane *> planes (surfaces.size ());
+  for (std::size_t i = 0; i < surfaces.size (); ++i)
+    planes[i] = dynamic_cast<const SharpPlane *> (surfaces[i].get ());
+  std::vector<Pencil> pencils;
+  const int n = static_cast<int> (surfaces.size ());
+  const auto plane = [&] (int i) { return planes[static_cast<std::size_t> (i)]; };
+  for (int a = 0; a < n; ++a)
+    for (int b = a + 1; b < n; ++b)
+      for (int c = b + 1; c < n; ++c)
+      {
+        Pencil pencil{ { a, b, c }, 0.0, 0.0 };
+        if (plane (a) && plane (b) && plane (c) && pencilOf ({ plane (a), plane (b), plane (c) }, tolerance, pencil))
+          pencils.push_back (pencil);
+      }
+  return pencils;
+}
+
+Enrichment::Enrichment (const ImplicitField &field)
+: field_ (field), pencils_ (findPencils (field.options ().sharp_surfaces, field.spacing ()))
+{
+}
+
+void
+Enrichment::gather (const Support &support)
+{
+  const auto &surfaces = field_.options ().sharp_surfaces;
+  const OrientedPoints &points = field_.points ();
+  near_count_ = 0;
+  for (std::size_t s = 0; s < surfaces.size (); ++s)
+  {
+    if (near_.size () == near_count_)
+      near_.emplace_back ();
+    NearSurface &near = near_[near_count_];
+    near.surface = static_cast<int> (s);
+    near.at_nodes.clear ();
+    bool below = false, above = false;
+    for (const int node : support.candidates ())
+    {
+      const Eigen::Vector3d p = points.positions[static_cast<std::size_t> (node)].cast<double> () + points.origin;
+      const double theta = surfaces[s]->theta (p);
+      near.at_nodes.push_back ({ theta, Eigen::Vector3d::Zero () });
+      below = below || theta < 0.0;
+      above = above || theta > 0.0;
+    }
+    if (!below || !above)
+      continue;
+    for (std::size_t i = 0; i < near.at_nodes.size (); ++i)
+    {
+      const auto node = static_cast<std::size_t> (support.candidates ()[i]);
+      near.at_nodes[i].gradient =
+          surfaces[s]->thetaGradient (points.positions[node].cast<double> () + points.origin);
+    }
+    ++near_count_;
+  }
+}
+
+int
+Enrichment::activeIndex (int surface) const
+{
+  for (std::size_t i = 0; i < near_count_; ++i)
+    if (near_[i].surface == surface && near_[i].active)
+      return static_cast<int> (i);
+  return -1;
+}
+
+void
+Enrichment::select (const Support &support, const Eigen::Vector3d &x)
+{
+  terms_.clear ();
+  if (near_count_ == 0)
+    return;
+  const Eigen::Vector3d position = x + field_.points ().origin;
+  for (std::size_t i = 0; i < near_count_; ++i)
+  {
+    NearSurface &near = near_[i];
+    bool below = false, above = false;
+    for (const SupportNode &node : support.nodes ())
+    {
+      const double theta = near.at_nodes[static_cast<std::size_t> (node.slot)].value;
+      below = below || theta < 0.0;
+      above = above || theta > 0.0;
+    }
+    near.active = below && above && size () < MAX_TERMS;
+    if (!near.active)
+      continue;
+    const SharpSurface &surface = *field_.options ().sharp_surfaces[static_cast<std::size_t> (near.surface)];
+    near.at_point = { surface.theta (position), surface.thetaGradient (position) };
+    terms_.push_back ({ static_cast<int> (i), -1, 1.0, 1.0 });
+  }
+  if (terms_.size () < 3)
+    return;
+  for (const Pencil &pencil : pencils_)
+  {
+    const int a = activeIndex (pencil.surfaces[0]), b = activeIndex (pencil.surfaces[1]);
+    if (a >= 0 && b >= 0 && activeIndex (pencil.surfaces[2]) >= 0 && size () < MAX_TERMS)
+      terms_.push_back ({ a, b, pencil.scale_a, pencil.scale_b });
+  }
+}
+
+void
+Enrichment::evaluate (const Term &term, const Theta &a, const Theta *b, double radius, double &value,
+                      Eigen::Vector3d &gradient)
+{
+  double height = term.scale_a * a.value;
+  Eigen::Vector3d slope = term.scale_a * a.gradient;
+  if (b != nullptr && term.scale_b * b->value < height)
+  {
+    height = term.scale_b * b->value;
+    slope = term.scale_b * b->gradient;
+  }
+  const bool positive = height >= 0.0; // H(0) = 1, eq. (23)
+  value = positive ? height / radius : 0.0;
+  gradient = positive ? slope : Eigen::Vector3d (Eigen::Vector3d::Zero ());
+}
+
+void
+Enrichment::atNode (int term, int slot, double radius, double &value, Eigen::Vector3d &gradient) const
+{
+  const Term &t = terms_[static_cast<std::size_t> (term)];
+  const auto i = static_cast<std::size_t> (slot);
+  const Theta *b = t.second < 0 ? nullptr : &near_[static_cast<std::size_t> (t.second)].at_nodes[i];
+  evaluate (t, near_[static_cast<std::size_t> (t.first)].at_nodes[i], b, radius, value, gradient);
+}
+
+void
+Enrichment::atPoint (int term, double radius, double &value, Eigen::Vector3d &gradient) const
+{
+  const Term &t = terms_[static_cast<std::size_t> (term)];
+  const Theta *b = t.second < 0 ? nullptr : &near_[static_cast<std::size_t> (t.second)].at_point;
+  evaluate (t, near_[static_cast<std::size_t> (t.first)].at_point, b, radius, value, gradient);
+}
+
+} // namespace erkpa

@@ -1,0 +1,98 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "support.h"
+
+#include <array>
+#include <vector>
+
+namespace erkpa
+{
+
+/** \brief Three sharp surfaces through one line, as three faces that meet in a corner give.
+  *
+  * With a = scale_a θ_a and b = scale_b θ_b the third is a - b up to its own scale. Max, min and saddle of the three
+  * faces differ from combinations of the θ⁺ by one function only: min (a⁺, b⁺).
+  */
+struct Pencil
+{
+  std::array<int, 3> surfaces;
+  double scale_a, scale_b;
+};
+
+/** \brief The pencils among planes: triples that share a line to within \a tolerance (a length). */
+std::vector<Pencil>
+findPencils (const std::vector<SharpSurface::ConstPtr> &surfaces, double tolerance);
+
+/** \brief The terms that sharp surfaces add to the reproduction vector: θH(θ) (eq. 22) and the corner terms.
+  *
+  * A surface is active at x where the support holds nodes on either side of it (paper, section 3.3).
+  */
+class Enrichment
+{
+public:
+  /** \brief More terms than this are not used at one point; the first surfaces given go first. */
+  static constexpr int MAX_TERMS = 30;
+
+  explicit Enrichment (const ImplicitField &field);
+
+  /** \brief Evaluate θ and ∇θ at the gathered nodes, for the surfaces that pass between them. */
+  void
+  gather (const Support &support);
+
+  /** \brief Choose the active terms for the support selected at \a x, and evaluate θ(x). */
+  void
+  select (const Support &support, const Eigen::Vector3d &x);
+
+  /** \brief Number of active terms. */
+  int
+  size () const
+  {
+    return static_cast<int> (terms_.size ());
+  }
+
+  /** \brief Value and gradient of an active term at a gathered node, in the scaled coordinates (θ/ε). */
+  void
+  atNode (int term, int slot, double radius, double &value, Eigen::Vector3d &gradient) const;
+
+  /** \brief The same at the evaluation point. */
+  void
+  atPoint (int term, double radius, double &value, Eigen::Vector3d &gradient) const;
+
+private:
+  struct Theta
+  {
+    double value;
+    Eigen::Vector3d gradient;
+  };
+
+  /** \brief A term: θ⁺ of one near surface (second < 0), or min (a⁺, b⁺) of two. */
+  struct Term
+  {
+    int first, second;
+    double scale_a, scale_b;
+  };
+
+  struct NearSurface
+  {
+    int surface;
+    std::vector<Theta> at_nodes;
+    Theta at_point;
+    bool active;
+  };
+
+  int
+  activeIndex (int surface) const;
+
+  static void
+  evaluate (const Term &term, const Theta &a, const Theta *b, double radius, double &value,
+            Eigen::Vector3d &gradient);
+
+  const ImplicitField &field_;
+  std::vector<Pencil> pencils_;
+  std::vector<NearSurface> near_;
+  std::size_t near_count_ = 0; // near_ keeps its memory from ball to ball
+  std::vector<Term> terms_;
+};
+
+} // namespace erkpa

@@ -1,0 +1,102 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "enrichment.h"
+#include "support.h"
+
+#include <erkpa/implicit_field.h>
+
+#include <cstddef>
+
+namespace erkpa
+{
+
+/** \brief A sample of the field with what the polygonizer wants to know beside it. */
+struct LocalSample : FieldSample
+{
+  double radius = 0.0;           ///< support radius ε(x)
+  double nearest_distance = 0.0; ///< from x to the nearest node
+  double border_offset = 0.0;    ///< |centroid of the weighted nodes - x| along the surface, in ε
+};
+
+/** \brief The field seen from one ball: gathers the nodes once, then evaluates f at any of the ball's points.
+  *
+  * Works in the local frame of OrientedPoints. One object per thread; its memory is reused from ball to ball.
+  */
+class LocalField
+{
+public:
+  explicit LocalField (const ImplicitField &field) : field_ (field), support_ (field), enrichment_ (field) {}
+
+  /** \brief Prepare for points within \a extent of \a center. */
+  void
+  gather (const Eigen::Vector3d &center, double extent);
+
+  /** \brief f(x); NaN where undefined. */
+  double
+  value (const Eigen::Vector3d &x);
+
+  /** \brief f(x), ∇f(x) and the rest. */
+  LocalSample
+  sample (const Eigen::Vector3d &x);
+
+  /** \brief The shape functions of the nodes in reach of x (eq. 19). */
+  std::vector<ShapeFunction>
+  shapeFunctions (const Eigen::Vector3d &x);
+
+  /** \brief Support radius and distance to the data of the last evaluation. */
+  const Support &
+  support () const
+  {
+    return support_;
+  }
+
+  /** \brief Attributes at the point last evaluated: the nodes' own, by kernel weight. */
+  void
+  blendAttributes (float *attributes) const;
+
+  /** \brief Evaluations so far, and the nodes they summed over. */
+  std::size_t
+  evaluations () const
+  {
+    return evaluations_;
+  }
+
+  std::size_t
+  supportNodes () const
+  {
+    return support_nodes_;
+  }
+
+private:
+  enum class Task
+  {
+    VALUE,
+    GRADIENT,
+    SHAPE_FUNCTIONS
+  };
+
+  /** \brief Select the support and the enrichment at x, then fit; false where f is undefined. */
+  bool
+  evaluate (const Eigen::Vector3d &x, Task task);
+
+  template <typename BasisT>
+  void
+  fit (Task task);
+
+  template <typename BasisT, int Size, int MaxSize>
+  void
+  fitWith (Task task);
+
+  double
+  borderOffset () const;
+
+  const ImplicitField &field_;
+  Support support_;
+  Enrichment enrichment_;
+  FieldSample result_;
+  std::vector<ShapeFunction> shape_functions_;
+  std::size_t evaluations_ = 0, support_nodes_ = 0;
+};
+
+} // namespace erkpa

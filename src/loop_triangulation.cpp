@@ -1,0 +1,126 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "loop_triangulation.h"
+
+#include "cell_loops.h"
+
+#include <Eigen/Geometry>
+
+#include <cstddef>
+
+namespace erkpa
+{
+
+namespace
+{
+
+/** \brief The cheapest triangulations of the sub-polygons i..j of a polygon, by dynamic programming. */
+class LoopTriangulator
+{
+public:
+  static constexpr double FORBIDDEN = 1e12; // of the polygon's squared size
+
+  LoopTriangulator (const std::vector<Eigen::Vector3d> &positions, const std::vector<Eigen::Vector3d> &normals,
+                    const std::array<int, 12> &edges)
+  : positions_ (positions), normals_ (normals), edges_ (edges), size_ (static_cast<int> (positions.size ()))
+  {
+    for (int i = 1; i < size_; ++i)
+      scale_ += (at (i) - at (0)).squaredNorm ();
+    for (int length = 2; length < size_; ++length)
+      for (int i = 0; i + length < size_; ++i)
+        findBest (i, i + length);
+  }
+
+  void
+  collect (int i, int j, std::vector<std::array<int, 3>> &triangles) const
+  {
+    if (j - i < 2)
+      return;
+    const int apex = entry (i, j).apex;
+    triangles.push_back ({ i, apex, j });
+    collect (i, apex, triangles);
+    collect (apex, j, triangles);
+  }
+
+  bool
+  isAllowed () const
+  {
+    return entry (0, size_ - 1).cost < 0.5 * FORBIDDEN * scale_;
+  }
+
+private:
+  struct Entry
+  {
+    double cost = 0.0;
+    int apex = 0;
+  };
+
+  const Entry &
+  entry (int i, int j) const
+  {
+    return entries_[static_cast<std::size_t> (i)][static_cast<std::size_t> (j)];
+  }
+
+  const Eigen::Vector3d &
+  at (int i) const
+  {
+    return positions_[static_cast<std::size_t> (i)];
+  }
+
+  void
+  findBest (int i, int j)
+  {
+    Entry best;
+    for (int apex = i + 1; apex < j; ++apex)
+    {
+      const double cost = entry (i, apex).cost + entry (apex, j).cost + costOfTriangle (i, apex, j);
+      if (best.apex == 0 || cost < best.cost)
+        best = { cost, apex };
+    }
+    const bool is_chord = j - i < size_ - 1;
+    if (is_chord)
+      best.cost += 0.01 * (at (j) - at (i)).squaredNorm () + (inOneFace (i, j) ? FORBIDDEN * scale_ : 0.0);
+    entries_[static_cast<std::size_t> (i)][static_cast<std::size_t> (j)] = best;
+  }
+
+  bool
+  inOneFace (int i, int j) const
+  {
+    return shareFace (edges_[static_cast<std::size_t> (i)], edges_[static_cast<std::size_t> (j)]);
+  }
+
+  /** \brief Twice the area that the triangle loses when seen along its vertices' mean normal. */
+  double
+  costOfTriangle (int i, int k, int j) const
+  {
+    const Eigen::Vector3d area = (at (k) - at (i)).cross (at (j) - at (i));
+    const Eigen::Vector3d normal = normals_[static_cast<std::size_t> (i)] + normals_[static_cast<std::size_t> (k)] +
+                                   normals_[static_cast<std::size_t> (j)];
+    const double length = normal.norm ();
+    return area.norm () - (length > 0.0 ? area.dot (normal) / length : 0.0);
+  }
+
+  const std::vector<Eigen::Vector3d> &positions_;
+  const std::vector<Eigen::Vector3d> &normals_;
+  const std::array<int, 12> &edges_;
+  int size_;
+  double scale_ = 0.0;
+  std::array<std::array<Entry, 12>, 12> entries_{};
+};
+
+} // namespace
+
+bool
+triangulateLoop (const std::vector<Eigen::Vector3d> &positions, const std::vector<Eigen::Vector3d> &normals,
+                 const std::array<int, 12> &edges, std::vector<std::array<int, 3>> &triangles)
+{
+  if (positions.size () == 3)
+  {
+    triangles.push_back ({ 0, 1, 2 });
+    return true;
+  }
+  const LoopTriangulator triangulator (positions, normals, edges);
+  triangulator.collect (0, static_cast<int> (positions.size ()) - 1, triangles);
+  return triangulator.isAllowed ();
+}
+
+} // namespace erkpa

@@ -1,0 +1,271 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <erkpa/marching_cubes.h>
+
+#include "border.h"
+#include "cell_loops.h"
+#include "loop_triangulation.h"
+#include "mesh_graph.h"
+#include "sparse_grid.h"
+#include "surface_tracking.h"
+#include "surface_vertices.h"
+#include "threads.h"
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+
+namespace erkpa
+{
+
+namespace
+{
+
+using Triangle = std::array<int, 3>;
+
+/** \brief Lengths of the box around the nodes. */
+Eigen::Vector3d
+extentOf (const OrientedPoints &points)
+{
+  Eigen::Vector3f low = points.positions.front (), high = low;
+  for (const Eigen::Vector3f &p : points.positions)
+  {
+    low = low.cwiseMin (p);
+    high = high.cwiseMax (p);
+  }
+  return (high - low).cast<double> ();
+}
+
+Outcome
+checkOptions (const PolygonizerOptions &options)
+{
+  const auto bad = [] (const std::string &why) { return Outcome{ Status::INVALID_SETTING, why }; };
+  if (!(options.voxel_size >= 0.0) || !std::isfinite (options.voxel_size))
+    return bad ("the voxel size must be positive and finite, or 0 for automatic");
+  if (options.resolution < 0)
+    return bad ("the grid resolution must be positive, or 0 for automatic");
+  if (!std::isfinite (options.iso_level))
+    return bad ("the iso level must be finite");
+  if (options.threads < 0)
+    return bad ("the number of threads must be positive, or 0 for all processors");
+  return {};
+}
+
+/** \brief Marks the edges that carry the vertices of the active cells. */
+void
+markCutEdges (const std::vector<GridPoint> &cells, SparseGrid &grid)
+{
+  for (const GridPoint &cell : cells)
+  {
+    const std::array<double, 8> values = grid.cornerValues (cell);
+    for (int e = 0; e < 12; ++e)
+    {
+      const CellEdge edge = cellEdge (e);
+      const int other = edge.corner | 1 << edge.axis;
+      if ((values[static_cast<std::size_t> (edge.corner)] < 0.0) == (values[static_cast<std::size_t> (other)] < 0.0))
+        continue;
+      const GridPlace place = grid.place (cell + cornerOffset (edge.corner));
+      grid.block (place.block).cut[static_cast<std::size_t> (edge.axis)] |= place.bit ();
+    }
+  }
+}
+
+/** \brief What one stretch of cells gives: triangles, and loops that need a vertex of their own inside the cell. */
+struct CellOutput
+{
+  std::vector<Triangle> triangles;
+  std::vector<std::vector<int>> centered_loops;
+};
+
+/** \brief Turns the loops of cells into triangles over the placed vertices. */
+class CellMesher
+{
+public:
+  CellMesher (const SparseGrid &grid, const SurfaceVertices &vertices) : grid_ (grid), vertices_ (vertices) {}
+
+  void
+  mesh (const GridPoint &cell, CellOutput &output)
+  {
+    const CellLoops loops = traceLoops (grid_.cornerValues (cell));
+    for (int loop = 0; loop < loops.count; ++loop)
+    {
+      const auto &edges = loops.edges[static_cast<std::size_t> (loop)];
+      const auto length = static_cast<std::size_t> (loops.lengths[static_cast<std::size_t> (loop)]);
+      ring_.clear ();
+      positions_.clear ();
+      normals_.clear ();
+      for (std::size_t i = 0; i < length; ++i)
+      {
+        const CellEdge edge = cellEdge (edges[i]);
+        ring_.push_back (grid_.vertexOnEdge (cell + cornerOffset (edge.corner), edge.axis));
+        positions_.push_back (vertices_.positions[static_cast<std::size_t> (ring_.back ())]);
+        normals_.push_back (vertices_.normals[static_cast<std::size_t> (ring_.back ())]);
+      }
+      corners_.clear ();
+      if (!triangulateLoop (positions_, normals_, edges, corners_))
+      {
+        output.centered_loops.push_back (ring_);
+        continue;
+      }
+      for (const Triangle &t : corners_)
+        output.triangles.push_back ({ at (t[0]), at (t[1]), at (t[2]) });
+    }
+  }
+
+private:
+  int
+  at (int corner) const
+  {
+    return ring_[static_cast<std::size_t> (corner)];
+  }
+
+  const SparseGrid &grid_;
+  const SurfaceVertices &vertices_;
+  std::vector<int> ring_;
+  std::vector<Eigen::Vector3d> positions_, normals_;
+  std::vector<Triangle> corners_;
+};
+
+/** \brief Adds a fan around a new vertex in the middle of a loop. */
+void
+addFan (const std::vector<int> &ring, std::vector<Triangle> &triangles, SurfaceVertices &vertices)
+{
+  Eigen::Vector3d middle = Eigen::Vector3d::Zero ();
+  for (const int v : ring)
+    middle += vertices.positions[static_cast<std::size_t> (v)] / static_cast<double> (ring.size ());
+  const int center = static_cast<int> (vertices.positions.size ());
+  vertices.positions.push_back (middle);
+  for (std::size_t i = 0; i < ring.size (); ++i)
+    triangles.push_back ({ ring[i], ring[(i + 1) % ring.size ()], center });
+}
+
+/** \brief All cells' triangles, in the order of the cells. */
+std::vector<Triangle>
+meshCells (const SparseGrid &grid, const std::vector<GridPoint> &cells, int threads, SurfaceVertices &vertices)
+{
+  constexpr std::size_t STRETCH = 1024;
+  std::vector<CellOutput> outputs ((cells.size () + STRETCH - 1) / STRETCH);
+  parallelFor (
+      outputs.size (), threads, [&] { return CellMesher (grid, vertices); },
+      [&] (CellMesher &mesher, std::size_t i) {
+        for (std::size_t c = i * STRETCH; c < std::min (cells.size (), (i + 1) * STRETCH); ++c)
+          mesher.mesh (cells[c], outputs[i]);
+      });
+  std::vector<Triangle> triangles;
+  for (const CellOutput &output : outputs)
+    triangles.insert (triangles.end (), output.triangles.begin (), output.triangles.end ());
+  for (const CellOutput &output : outputs)
+    for (const std::vector<int> &ring : output.centered_loops)
+      addFan (ring, triangles, vertices);
+  return triangles;
+}
+
+/** \brief Drops the pieces of surface that too few nodes support; returns how many. */
+std::size_t
+dropUnsupported (const SparseGrid &grid, const std::vector<GridPoint> &cells_of_nodes, int min_points,
+                 std::size_t vertex_count, std::vector<Triangle> &triangles)
+{
+  DisjointSets pieces (vertex_count);
+  std::vector<char> used (vertex_count, 0);
+  for (const Triangle &t : triangles)
+  {
+    pieces.unite (t[0], t[1]);
+    pieces.unite (t[1], t[2]);
+    for (const int v : t)
+      used[static_cast<std::size_t> (v)] = 1;
+  }
+  std::vector<int> support (vertex_count, 0);
+  for (const GridPoint &cell : cells_of_nodes)
+  {
+    if (cell.x == SurfaceTracker::NO_CELL || !grid.isActive (cell))
+      continue;
+    const CellLoops loops = traceLoops (grid.cornerValues (cell));
+    const CellEdge edge = cellEdge (loops.edges[0][0]);
+    const int vertex = grid.vertexOnEdge (cell + cornerOffset (edge.corner), edge.axis);
+    if (used[static_cast<std::size_t> (vertex)])
+      ++support[static_cast<std::size_t> (pieces.find (vertex))];
+  }
+  std::size_t dropped = 0;
+  for (int v = 0; v < static_cast<int> (vertex_count); ++v)
+    dropped += used[static_cast<std::size_t> (v)] && pieces.find (v) == v &&
+                       support[static_cast<std::size_t> (v)] < min_points
+                   ? 1
+                   : 0;
+  triangles.erase (std::remove_if (triangles.begin (), triangles.end (),
+                                   [&] (const Triangle &t) {
+                                     return support[static_cast<std::size_t> (pieces.find (t[0]))] < min_points;
+                                   }),
+                   triangles.end ());
+  return dropped;
+}
+
+TriangleMesh
+toInputFrame (const OrientedPoints &points, const SurfaceVertices &vertices, std::vector<Triangle> &triangles)
+{
+  TriangleMesh mesh;
+  mesh.vertices.reserve (vertices.positions.size ());
+  mesh.normals.reserve (vertices.positions.size ());
+  for (std::size_t v = 0; v < vertices.positions.size (); ++v)
+  {
+    mesh.vertices.emplace_back ((vertices.positions[v] + points.origin).cast<float> ());
+    mesh.normals.emplace_back (vertices.normals[v].cast<float> ());
+  }
+  mesh.channels = points.channels;
+  mesh.attributes = vertices.attributes;
+  mesh.triangles.swap (triangles);
+  removeUnusedVertices (mesh);
+  return mesh;
+}
+
+} // namespace
+
+double
+chooseVoxelSize (const ImplicitField &field, const PolygonizerOptions &options)
+{
+  if (options.voxel_size > 0.0)
+    return options.voxel_size;
+  if (options.resolution > 0)
+    return extentOf (field.points ()).maxCoeff () / options.resolution;
+  return options.spacing_per_voxel * field.spacing ();
+}
+
+Outcome
+polygonize (const ImplicitField &field, const PolygonizerOptions &options, TriangleMesh &mesh,
+            PolygonizerReport &report, const ProgressCallback &progress)
+{
+  mesh.clear ();
+  report = PolygonizerReport ();
+  Outcome outcome = checkOptions (options);
+  if (!outcome.ok ())
+    return outcome;
+  const double voxel = report.voxel_size = chooseVoxelSize (field, options);
+  const double cells = extentOf (field.points ()).maxCoeff () / voxel;
+  if (!(cells < SparseGrid::LIMIT))
+    return { Status::GRID_TOO_FINE, "a voxel of " + std::to_string (voxel) +
+                                        " is too small for the extent of the cloud: use a larger voxel size" };
+
+  // Off the middle of the cloud by odd shares of a cell: faces of boxes then do not fall on grid nodes.
+  SparseGrid grid (-voxel * Eigen::Vector3d (0.371, 0.437, 0.293), voxel);
+  SurfaceTracker tracker (field, options, grid, report, progress);
+  outcome = tracker.track ();
+  if (!outcome.ok ())
+    return outcome;
+  markCutEdges (tracker.activeCells (), grid);
+  SurfaceVertices vertices;
+  placeVertices (field, options, grid, vertices, report);
+
+  const std::size_t on_edges = vertices.positions.size ();
+  std::vector<Triangle> triangles = meshCells (grid, tracker.activeCells (), options.threads, vertices);
+  projectVertices (field, options, on_edges, 0.3 * voxel, vertices, report);
+  const std::size_t in_cells = vertices.positions.size ();
+  trimBorder (options.border_offset, triangles, vertices);
+  projectVertices (field, options, in_cells, 0.1 * voxel, vertices, report);
+  report.dropped_components = dropUnsupported (grid, tracker.cellsOfNodes (), options.min_component_points,
+                                               vertices.positions.size (), triangles);
+  if (triangles.empty ())
+    return { Status::NO_SURFACE, "no surface was found at the points: the support may hold too few of them (use a "
+                                 "larger k or radius), or the iso level may lie beyond them" };
+  mesh = toInputFrame (field.points (), vertices, triangles);
+  return {};
+}
+
+} // namespace erkpa

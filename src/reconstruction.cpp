@@ -1,0 +1,98 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <erkpa/reconstruction.h>
+
+#include "support.h"
+
+#include <chrono>
+#include <memory>
+#include <string>
+
+namespace erkpa
+{
+
+namespace
+{
+
+/** \brief Adds the time it lives to a number of seconds. */
+class StageClock
+{
+public:
+  explicit StageClock (double &seconds) : seconds_ (seconds), start_ (Clock::now ()) {}
+
+  StageClock (const StageClock &) = delete;
+  StageClock &
+  operator= (const StageClock &) = delete;
+
+  ~StageClock ()
+  {
+    seconds_ += std::chrono::duration<double> (Clock::now () - start_).count ();
+  }
+
+private:
+  using Clock = std::chrono::steady_clock;
+  double &seconds_;
+  Clock::time_point start_;
+};
+
+Outcome
+collect (const PointView &view, const SearchFactory &make_search, OrientedPoints &points,
+         NeighborSearch::ConstPtr &search, Report &report)
+{
+  const StageClock clock (report.seconds_points);
+  const Outcome outcome = collectPoints (view, points, report.points);
+  if (!outcome.ok ())
+    return outcome;
+  if (points.size () < Support::MIN_NODES)
+    return { Status::TOO_FEW_POINTS, "the input has " + std::to_string (points.size ()) + " distinct, finite points of " +
+                                         std::to_string (report.points.read) + " read: a surface needs at least " +
+                                         std::to_string (Support::MIN_NODES) };
+  search = make_search ? make_search (points) : makeKdTreeSearch (points.positions);
+  return {};
+}
+
+} // namespace
+
+Outcome
+buildField (const PointView &view, const Options &options, const SearchFactory &make_search,
+            ImplicitField::ConstPtr &field, Report &report)
+{
+  field.reset ();
+  report = Report ();
+  const StageClock total (report.seconds_total);
+  Outcome outcome = ImplicitField::checkOptions (options.field);
+  if (!outcome.ok ())
+    return outcome;
+  const auto points = std::make_shared<OrientedPoints> ();
+  NeighborSearch::ConstPtr search;
+  outcome = collect (view, make_search, *points, search, report);
+  if (!outcome.ok ())
+    return outcome;
+  if (report.points.without_normal > 0)
+  {
+    const StageClock clock (report.seconds_normals);
+    outcome = estimateNormals (*points, *search, options.normals, report.orientation);
+    if (!outcome.ok ())
+      return outcome;
+  }
+  const StageClock clock (report.seconds_field);
+  field = std::make_shared<ImplicitField> (points, search, options.field);
+  report.k = field->options ().radius > 0.0 ? 0 : field->options ().k;
+  report.radius = field->options ().radius;
+  report.spacing = field->spacing ();
+  return {};
+}
+
+Outcome
+buildMesh (const ImplicitField &field, const Options &options, TriangleMesh &mesh, Report &report,
+           const ProgressCallback &progress)
+{
+  const StageClock total (report.seconds_total);
+  const StageClock clock (report.seconds_polygonizer);
+  const Outcome outcome = polygonize (field, options.polygonizer, mesh, report.polygonizer, progress);
+  report.topology = measureTopology (mesh);
+  report.vertices = mesh.vertices.size ();
+  report.triangles = mesh.triangles.size ();
+  return outcome;
+}
+
+} // namespace erkpa

@@ -1,0 +1,143 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "surface_vertices.h"
+
+#include "threads.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace erkpa
+{
+
+namespace
+{
+
+constexpr double TOLERANCE = 1e-4; // of a voxel, along the edge
+constexpr double MARGIN = 1e-3;    // of a voxel: a vertex keeps this far from the grid nodes, or triangles degenerate
+constexpr int MAX_STEPS = 12;
+
+/** \brief Finds the root of f - iso on grid edges. */
+class EdgeRoots
+{
+public:
+  EdgeRoots (const SparseGrid &grid, const PolygonizerOptions &options) : grid_ (grid), options_ (options) {}
+
+  /** \brief The root between two nodes with values of different sign; \a sample is taken there. */
+  Eigen::Vector3d
+  find (LocalField &local, const GridPoint &node, int axis, double low, double high, LocalSample &sample) const
+  {
+    const Eigen::Vector3d start = grid_.position (node);
+    const double length = grid_.voxelSize ();
+    double t = std::clamp (low / (low - high), MARGIN, 1.0 - MARGIN);
+    double t_low = 0.0, t_high = 1.0;
+    Eigen::Vector3d position;
+    for (int step = 0;; ++step)
+    {
+      position = start;
+      position[axis] += t * length;
+      sample = local.sample (position);
+      const double value = sample.value - options_.iso_level;
+      if (step == MAX_STEPS || !sample.isDefined ())
+        break;
+      const double slope = sample.gradient[axis] * length;
+      if (std::abs (value) <= TOLERANCE * std::abs (slope) || t_high - t_low < TOLERANCE)
+        break;
+      ((value < 0.0) == (low < 0.0) ? t_low : t_high) = t;
+      const double newton = t - value / slope;
+      const double next = newton > t_low && newton < t_high ? newton : 0.5 * (t_low + t_high);
+      const double clamped = std::clamp (next, MARGIN, 1.0 - MARGIN);
+      if (clamped == t)
+        break;
+      t = clamped;
+    }
+    return position;
+  }
+
+private:
+  const SparseGrid &grid_;
+  const PolygonizerOptions &options_;
+};
+
+void
+storeVertex (const LocalField &local, const LocalSample &sample, const Eigen::Vector3d &position,
+             std::size_t vertex, int channels, SurfaceVertices &vertices)
+{
+  vertices.positions[vertex] = position;
+  const double slope = sample.gradient.norm ();
+  vertices.normals[vertex] = slope > 0.0 ? Eigen::Vector3d (sample.gradient / slope) : Eigen::Vector3d::Zero ();
+  vertices.border_offsets[vertex] = sample.border_offset;
+  if (channels > 0)
+    local.blendAttributes (&vertices.attributes[vertex * static_cast<std::size_t> (channels)]);
+}
+
+} // namespace
+
+void
+placeVertices (const ImplicitField &field, const PolygonizerOptions &options, SparseGrid &grid,
+               SurfaceVertices &vertices, PolygonizerReport &report)
+{
+  const int channels = field.points ().channels;
+  vertices.resize (static_cast<std::size_t> (grid.numberVertices ()), channels);
+  const EdgeRoots roots (grid, options);
+  const double half = 0.5 * GridBlock::SIDE * grid.voxelSize ();
+
+  const auto place_block = [&] (LocalField &local, std::size_t index) {
+    const GridBlock &block = grid.block (static_cast<int> (index));
+    if ((block.cut[0] | block.cut[1] | block.cut[2]) == 0)
+      return;
+    local.gather (grid.position (block.first).array () + half, std::sqrt (3.0) * half);
+    auto vertex = static_cast<std::size_t> (block.first_vertex);
+    for (int axis = 0; axis < 3; ++axis)
+      for (int node = 0; node < GridBlock::NODES; ++node)
+      {
+        if (!(block.cut[static_cast<std::size_t> (axis)] >> node & 1))
+          continue;
+        const GridPoint low = SparseGrid::pointAt (block, node);
+        const GridPlace high = grid.find ({ low.x + (axis == 0), low.y + (axis == 1), low.z + (axis == 2) });
+        LocalSample sample;
+        const Eigen::Vector3d position =
+            roots.find (local, low, axis, block.values[static_cast<std::size_t> (node)],
+                        grid.block (high.block).values[static_cast<std::size_t> (high.local)], sample);
+        storeVertex (local, sample, position, vertex++, channels, vertices);
+      }
+  };
+  parallelFor (
+      static_cast<std::size_t> (grid.blockCount ()), options.threads, [&] { return LocalField (field); },
+      place_block, [&report] (const LocalField &local) {
+        report.evaluations += local.evaluations ();
+        report.support_nodes += local.supportNodes ();
+      });
+}
+
+void
+projectVertices (const ImplicitField &field, const PolygonizerOptions &options, std::size_t first, double limit,
+                 SurfaceVertices &vertices, PolygonizerReport &report)
+{
+  const int channels = field.points ().channels;
+  vertices.resize (vertices.positions.size (), channels);
+  const auto project = [&] (LocalField &local, std::size_t i) {
+    const std::size_t vertex = first + i;
+    const Eigen::Vector3d start = vertices.positions[vertex];
+    Eigen::Vector3d position = start;
+    local.gather (start, limit);
+    LocalSample sample = local.sample (position);
+    for (int step = 0; step < 3 && sample.isDefined (); ++step)
+    {
+      const double slope = std::max (sample.gradient.squaredNorm (), 1e-12);
+      const Eigen::Vector3d next = position + (options.iso_level - sample.value) / slope * sample.gradient;
+      if (!((next - start).norm () < limit))
+        break;
+      position = next;
+      sample = local.sample (position);
+    }
+    storeVertex (local, sample, position, vertex, channels, vertices);
+  };
+  parallelFor (
+      vertices.positions.size () - first, options.threads, [&] { return LocalField (field); }, project,
+      [&report] (const LocalField &local) {
+        report.evaluations += local.evaluations ();
+        report.support_nodes += local.supportNodes ();
+      });
+}
+
+} // namespace erkpa

@@ -1,0 +1,46 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "local_field.h"
+#include "sparse_grid.h"
+
+#include <erkpa/marching_cubes.h>
+
+#include <vector>
+
+namespace erkpa
+{
+
+/** \brief The vertices of a surface in the making, in the local frame. */
+struct SurfaceVertices
+{
+  std::vector<Eigen::Vector3d> positions;
+  std::vector<Eigen::Vector3d> normals;   ///< unit, ∇f/|∇f|
+  std::vector<double> border_offsets;     ///< see LocalSample::border_offset
+  std::vector<float> attributes;          ///< channels values per vertex
+
+  void
+  resize (std::size_t size, int channels)
+  {
+    positions.resize (size);
+    normals.resize (size);
+    border_offsets.resize (size);
+    attributes.resize (size * static_cast<std::size_t> (channels));
+  }
+};
+
+/** \brief Put a vertex on every cut edge of the grid, on f = iso.
+  *
+  * The root on each edge is found by safeguarded Newton steps from the linear guess.
+  * \param[in,out] grid cut edges marked; vertices get numbered
+  */
+void
+placeVertices (const ImplicitField &field, const PolygonizerOptions &options, SparseGrid &grid,
+               SurfaceVertices &vertices, PolygonizerReport &report);
+
+/** \brief Project vertices \a first .. end to f = iso, each within \a limit of where it is, and fill in the rest. */
+void
+projectVertices (const ImplicitField &field, const PolygonizerOptions &options, std::size_t first, double limit,
+                 SurfaceVertices &vertices, PolygonizerReport &report);
+
+} // namespace erkpa

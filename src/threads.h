@@ -1,0 +1,66 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <omp.h>
+
+#include <algorithm>
+#include <cstddef>
+#include <exception>
+#include <vector>
+
+namespace erkpa
+{
+
+/** \brief Number of threads for a setting where 0 means all processors. */
+inline int
+threadCount (int threads)
+{
+  return threads > 0 ? threads : omp_get_max_threads ();
+}
+
+/** \brief Runs work (worker, i) for i = 0 .. count - 1 on several threads, with one worker per thread.
+  *
+  * Items must not depend on each other; then the result does not depend on the number of threads. An
+  * exception thrown by an item is thrown again here once all threads have stopped.
+  * \param[in] make_worker makes the scratch memory of one thread
+  * \param[in] work called once per item
+  * \param[in] finish called for each worker at the end, from the calling thread
+  */
+template <typename MakeWorkerT, typename WorkT, typename FinishT>
+void
+parallelFor (std::size_t count, int threads, MakeWorkerT make_worker, WorkT work, FinishT finish)
+{
+  const int thread_count = std::min (threadCount (threads), static_cast<int> (std::min<std::size_t> (count, 4096)));
+  std::vector<decltype (make_worker ())> workers;
+  workers.reserve (static_cast<std::size_t> (thread_count));
+  for (int t = 0; t < thread_count; ++t)
+    workers.push_back (make_worker ());
+
+  std::exception_ptr failure;
+#pragma omp parallel for schedule(dynamic, 8) num_threads (thread_count)
+  for (std::size_t i = 0; i < count; ++i)
+  {
+    try
+    {
+      work (workers[static_cast<std::size_t> (omp_get_thread_num ())], i);
+    }
+    catch (...)
+    {
+#pragma omp critical(erkpa_failure)
+      failure = std::current_exception ();
+    }
+  }
+  if (failure)
+    std::rethrow_exception (failure);
+  for (auto &worker : workers)
+    finish (worker);
+}
+
+template <typename MakeWorkerT, typename WorkT>
+void
+parallelFor (std::size_t count, int threads, MakeWorkerT make_worker, WorkT work)
+{
+  parallelFor (count, threads, make_worker, work, [] (auto &) {});
+}
+
+} // namespace erkpa

@@ -1,0 +1,153 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "point_fields.h"
+
+#include <algorithm>
+#include <cstring>
+#include <limits>
+#include <type_traits>
+
+namespace erkpa::tool
+{
+
+namespace
+{
+
+using Field = pcl::PCLPointField;
+
+template <typename T>
+T
+load (const std::uint8_t *from)
+{
+  T value;
+  std::memcpy (&value, from, sizeof (T));
+  return value;
+}
+
+/** \brief Calls \a action with a zero of the type that a field's datatype names. */
+template <typename ActionT>
+auto
+withType (std::uint8_t datatype, ActionT action)
+{
+  switch (datatype)
+  {
+  case Field::INT8:
+    return action (std::int8_t ());
+  case Field::UINT8:
+    return action (std::uint8_t ());
+  case Field::INT16:
+    return action (std::int16_t ());
+  case Field::UINT16:
+    return action (std::uint16_t ());
+  case Field::INT32:
+    return action (std::int32_t ());
+  case Field::UINT32:
+    return action (std::uint32_t ());
+  case Field::INT64:
+    return action (std::int64_t ());
+  case Field::UINT64:
+    return action (std::uint64_t ());
+  case Field::FLOAT32:
+    return action (float ());
+  default:
+    return action (double ());
+  }
+}
+
+/** \brief A number as the bytes of a type; what an integer type cannot hold becomes its nearest value. */
+template <typename T>
+void
+append (double value, std::vector<std::uint8_t> &data)
+{
+  T stored = T ();
+  if constexpr (std::is_floating_point_v<T>)
+    stored = static_cast<T> (value);
+  else if (value >= static_cast<double> (std::numeric_limits<T>::max ()))
+    stored = std::numeric_limits<T>::max ();
+  else if (value > static_cast<double> (std::numeric_limits<T>::lowest ()))
+    stored = static_cast<T> (value);
+  const auto *bytes = reinterpret_cast<const std::uint8_t *> (&stored);
+  data.insert (data.end (), bytes, bytes + sizeof (T));
+}
+
+} // namespace
+
+std::size_t
+sizeOfType (std::uint8_t datatype)
+{
+  return withType (datatype, [] (auto zero) { return sizeof (zero); });
+}
+
+void
+appendField (pcl::PCLPointCloud2 &cloud, const std::string &name, std::uint8_t datatype, std::uint32_t count)
+{
+  Field field;
+  field.name = name;
+  field.offset = cloud.point_step;
+  field.datatype = datatype;
+  field.count = count;
+  cloud.fields.push_back (field);
+  cloud.point_step += static_cast<std::uint32_t> (sizeOfType (datatype) * count);
+}
+
+std::size_t
+columnsOf (const pcl::PCLPointCloud2 &cloud)
+{
+  std::size_t columns = 0;
+  for (const Field &field : cloud.fields)
+    columns += field.count;
+  return columns;
+}
+
+void
+appendRow (const TextScanner &scanner, const std::vector<std::string_view> &tokens, pcl::PCLPointCloud2 &cloud)
+{
+  auto token = tokens.begin ();
+  for (const Field &field : cloud.fields)
+    for (std::uint32_t i = 0; i < field.count; ++i, ++token)
+    {
+      const double value = scanner.number (*token);
+      withType (field.datatype, [&] (auto zero) { append<decltype (zero)> (value, cloud.data); });
+    }
+}
+
+void
+readRows (TextScanner &scanner, std::size_t count, pcl::PCLPointCloud2 &cloud)
+{
+  const std::size_t columns = columnsOf (cloud);
+  const std::size_t fit = scanner.remaining () / (2 * columns) + 1; // a value takes two bytes at least
+  cloud.data.reserve (std::min (count, fit) * cloud.point_step);    // whatever a broken header asks for
+  std::vector<std::string_view> tokens;
+  for (std::size_t i = 0; i < count; ++i)
+  {
+    scanner.requireRow (tokens, "point " + std::to_string (i + 1) + " of " + std::to_string (count));
+    scanner.requireColumns (tokens, columns);
+    appendRow (scanner, tokens, cloud);
+  }
+}
+
+FieldReader::FieldReader (const pcl::PCLPointCloud2 &cloud, const std::vector<std::string> &names)
+{
+  for (const std::string &name : names)
+    for (const Field &field : cloud.fields)
+      if (!exists () && field.name == name && field.count > 0)
+      {
+        cloud_ = &cloud;
+        offset_ = field.offset;
+        datatype_ = field.datatype;
+      }
+}
+
+double
+FieldReader::operator() (std::size_t point) const
+{
+  const std::uint8_t *from = cloud_->data.data () + point * cloud_->point_step + offset_;
+  return withType (datatype_, [from] (auto zero) { return static_cast<double> (load<decltype (zero)> (from)); });
+}
+
+std::uint32_t
+FieldReader::bits (std::size_t point) const
+{
+  return load<std::uint32_t> (cloud_->data.data () + point * cloud_->point_step + offset_);
+}
+
+} // namespace erkpa::tool
