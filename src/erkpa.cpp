@@ -23,9 +23,10 @@ reportPoints (const std::string &class_name, const Report &report, const Options
               "point (%g, %g, %g).\n",
               class_name.c_str (), points.without_normal, eye.x (), eye.y (), eye.z ());
   else
-    PCL_WARN ("[%s::reconstruct] %zu points have no usable normal: normals are estimated and oriented from neighbour "
-              "to neighbour, since the view point (%g, %g, %g) contradicts the surface.\n",
-              class_name.c_str (), points.without_normal, eye.x (), eye.y (), eye.z ());
+    PCL_WARN ("[%s::reconstruct] %zu points have no usable normal: normals are estimated and oriented outwards, from "
+              "neighbour to neighbour%s.\n",
+              class_name.c_str (), points.without_normal,
+              options.normals.has_view_point ? ", where the view point cannot have seen the surface" : "");
 }
 
 namespace

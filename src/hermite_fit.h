@@ -151,7 +151,7 @@ private:
   thresholds () const
   {
     constexpr double OF_DEGREE[] = { 0.0, 1e-10, 1e-4 };
-    constexpr double OF_ENRICHMENT = 2e-3;
+    constexpr double OF_ENRICHMENT = 2e-4;
     Vector thresholds (system_.size ());
     for (int j = 0; j < system_.size (); ++j)
       thresholds[j] = j < BasisT::SIZE ? OF_DEGREE[degree (j)] : OF_ENRICHMENT;

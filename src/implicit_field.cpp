@@ -2,64 +2,35 @@
 #include <erkpa/implicit_field.h>
 
 #include "local_field.h"
+#include "noise.h"
 #include "threads.h"
 
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <numeric>
 #include <utility>
 
 namespace erkpa
 {
 
-namespace
-{
-
-/** \brief Every so-many-th index, at most \a count of them. */
-std::vector<std::size_t>
-spreadIndices (std::size_t size, std::size_t count)
-{
-  const std::size_t step = std::max<std::size_t> (1, size / count);
-  std::vector<std::size_t> indices;
-  for (std::size_t i = 0; i < size; i += step)
-    indices.push_back (i);
-  return indices;
-}
-
-/** \brief Median side of the square that a node has to itself, from the distance to its 8th neighbour. */
-double
-measureSpacing (const OrientedPoints &points, const NeighborSearch &search)
-{
-  const int k = static_cast<int> (std::min<std::size_t> (9, points.size ())); // the node itself is one of them
-  std::vector<double> spacings;
-  std::vector<int> indices;
-  std::vector<float> squared;
-  for (const std::size_t i : spreadIndices (points.size (), 2000))
-  {
-    search.nearestK (points.positions[i], k, indices, squared);
-    const double farthest = squared.empty () ? 0.0 : *std::max_element (squared.begin (), squared.end ());
-    spacings.push_back (std::sqrt (M_PI * farthest / std::max (1, k - 1)));
-  }
-  if (spacings.empty ())
-    return 0.0;
-  const auto middle = spacings.begin () + static_cast<std::ptrdiff_t> (spacings.size () / 2);
-  std::nth_element (spacings.begin (), middle, spacings.end ());
-  return *middle;
-}
-
-} // namespace
-
 ImplicitField::ImplicitField (std::shared_ptr<const OrientedPoints> points, NeighborSearch::ConstPtr search,
                               const FieldOptions &options)
 : points_ (std::move (points)), search_ (std::move (search)), options_ (options)
 {
+  const int k = chooseSupportSize (*points_, *search_);
   spacing_ = measureSpacing (*points_, *search_);
+  feature_size_ = spacing_ * std::sqrt (static_cast<double> (k) / CLEAN_SUPPORT);
   if (options_.radius == 0.0 && options_.k == 0)
-    options_.k = 20;
+    options_.k = k;
 }
 
 ImplicitField::~ImplicitField () = default;
+
+double
+ImplicitField::typicalRadius () const
+{
+  return options_.radius > 0.0 ? options_.radius : spacing_ * std::sqrt (options_.k / M_PI);
+}
 
 Outcome
 ImplicitField::checkOptions (const FieldOptions &options)
@@ -105,7 +76,7 @@ ImplicitField::evaluate (const std::vector<Eigen::Vector3d> &points, std::vector
 {
   samples.assign (points.size (), FieldSample ());
   // Points of one cell of a coarse grid share a neighbourhood.
-  const double side = 2.0 * std::max (spacing_, 1e-30);
+  const double side = std::max (0.6 * typicalRadius (), 1e-30);
   using Cell = std::array<double, 3>;
   std::vector<std::pair<Cell, std::size_t>> order (points.size ());
   for (std::size_t i = 0; i < points.size (); ++i)

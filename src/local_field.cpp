@@ -30,7 +30,6 @@ LocalField::sample (const Eigen::Vector3d &x)
   if (evaluate (x, Task::GRADIENT))
     static_cast<FieldSample &> (sample) = result_;
   sample.radius = support_.radius ();
-  sample.nearest_distance = support_.nearestDistance ();
   sample.border_offset = borderOffset ();
   return sample;
 }

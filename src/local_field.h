@@ -15,7 +15,6 @@ namespace erkpa
 struct LocalSample : FieldSample
 {
   double radius = 0.0;           ///< support radius ε(x)
-  double nearest_distance = 0.0; ///< from x to the nearest node
   double border_offset = 0.0;    ///< |centroid of the weighted nodes - x| along the surface, in ε
 };
 

@@ -225,7 +225,7 @@ chooseVoxelSize (const ImplicitField &field, const PolygonizerOptions &options)
     return options.voxel_size;
   if (options.resolution > 0)
     return extentOf (field.points ()).maxCoeff () / options.resolution;
-  return options.spacing_per_voxel * field.spacing ();
+  return options.voxel_per_feature * field.featureSize ();
 }
 
 Outcome

@@ -1,33 +1,63 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <erkpa/normals.h>
 
+#include "noise.h"
+#include "normal_orientation.h"
 #include "threads.h"
 
 #include <pcl/features/normal_3d_omp.h>
 #include <pcl/search/kdtree.h>
 
+#include <cmath>
+
 namespace erkpa
 {
 
-Outcome
-estimateNormals (OrientedPoints &points, const NeighborSearch &, const NormalOptions &options,
-                 Orientation &orientation)
+namespace
+{
+
+/** \brief Normals by the plane fit of PCL, each towards the view point. */
+std::vector<Eigen::Vector3f>
+fitPlanes (const OrientedPoints &points, int k, const Eigen::Vector3f &view_point, int threads)
 {
   const pcl::PointCloud<pcl::PointXYZ>::Ptr cloud (new pcl::PointCloud<pcl::PointXYZ>);
+  cloud->reserve (points.size ());
   for (const Eigen::Vector3f &p : points.positions)
     cloud->push_back (pcl::PointXYZ (p.x (), p.y (), p.z ()));
-  pcl::NormalEstimationOMP<pcl::PointXYZ, pcl::Normal> estimation (static_cast<unsigned> (options.threads));
+  pcl::NormalEstimationOMP<pcl::PointXYZ, pcl::Normal> estimation (static_cast<unsigned> (threadCount (threads)));
   estimation.setInputCloud (cloud);
-  estimation.setSearchMethod (pcl::search::KdTree<pcl::PointXYZ>::Ptr (new pcl::search::KdTree<pcl::PointXYZ> (false)));
-  estimation.setKSearch (options.k > 0 ? options.k : 20);
-  const Eigen::Vector3f view_point = (options.view_point - points.origin).cast<float> ();
+  estimation.setSearchMethod (pcl::make_shared<pcl::search::KdTree<pcl::PointXYZ>> (false));
+  estimation.setKSearch (k);
   estimation.setViewPoint (view_point.x (), view_point.y (), view_point.z ());
-  pcl::PointCloud<pcl::Normal> normals;
-  estimation.compute (normals);
+  pcl::PointCloud<pcl::Normal> estimated;
+  estimation.compute (estimated);
+  std::vector<Eigen::Vector3f> normals;
+  normals.reserve (points.size ());
+  for (const pcl::Normal &n : estimated)
+    normals.emplace_back (n.normal_x, n.normal_y, n.normal_z);
+  return normals;
+}
+
+} // namespace
+
+Outcome
+estimateNormals (OrientedPoints &points, const NeighborSearch &search, const NormalOptions &options,
+                 Orientation &orientation)
+{
+  if (options.k != 0 && options.k < 3)
+    return { Status::INVALID_SETTING, "normals need at least 3 neighbours, or 0 for automatic" };
+  const int k = options.k > 0 ? options.k : chooseSupportSize (points, search);
+  const Eigen::Vector3f view_point = (options.view_point - points.origin).cast<float> ();
+  std::vector<Eigen::Vector3f> estimated = fitPlanes (points, k, view_point, options.threads);
   for (std::size_t i = 0; i < points.size (); ++i)
-    if (points.normals[i].isZero (0.0f))
-      points.normals[i] = normals[i].getNormalVector3fMap ();
-  orientation = Orientation::VIEW_POINT;
+  {
+    if (!points.normals[i].isZero (0.0f))
+      estimated[i] = points.normals[i];
+    else if (!estimated[i].allFinite ())
+      return { Status::NO_NORMALS, "normals could not be estimated at some points: give normals with the input" };
+  }
+  orientation = orientNormals (points, search, k, options, estimated);
+  points.normals.swap (estimated);
   return {};
 }
 

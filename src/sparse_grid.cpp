@@ -15,7 +15,31 @@ countBits (std::uint64_t bits)
   return __builtin_popcountll (bits);
 }
 
+std::vector<BlockPart>
+makeParts (int side)
+{
+  std::vector<BlockPart> parts;
+  for (int z = 0; z < GridBlock::SIDE; z += side)
+    for (int y = 0; y < GridBlock::SIDE; y += side)
+      for (int x = 0; x < GridBlock::SIDE; x += side)
+      {
+        BlockPart part{ 0, { x, y, z }, side };
+        for (int node = 0; node < GridBlock::NODES; ++node)
+          if ((node & 3) / side == x / side && ((node >> 2) & 3) / side == y / side && (node >> 4) / side == z / side)
+            part.nodes |= std::uint64_t (1) << node;
+        parts.push_back (part);
+      }
+  return parts;
+}
+
 } // namespace
+
+const std::vector<BlockPart> &
+partsOfBlock (double support)
+{
+  static const std::array<std::vector<BlockPart>, 3> PARTS{ makeParts (1), makeParts (2), makeParts (4) };
+  return PARTS[support > 2.5 ? 2 : support > 1.0 ? 1 : 0];
+}
 
 GridPoint
 SparseGrid::cellOf (const Eigen::Vector3d &position) const
@@ -68,6 +92,18 @@ SparseGrid::cornerValues (const GridPoint &cell) const
   return values;
 }
 
+bool
+SparseGrid::isNear (const GridPoint &cell) const
+{
+  for (int corner = 0; corner < 8; ++corner)
+  {
+    const GridPlace place = find (cell + cornerOffset (corner));
+    if (block (place.block).near & place.bit ())
+      return true;
+  }
+  return false;
+}
+
 int
 SparseGrid::numberVertices ()
 {
@@ -82,14 +118,12 @@ SparseGrid::numberVertices ()
 }
 
 int
-SparseGrid::vertexOnEdge (const GridPoint &node, int axis) const
+SparseGrid::vertexOnEdge (const GridBlock &block, int node, int axis)
 {
-  const GridPlace place = find (node);
-  const GridBlock &owner = block (place.block);
-  int vertex = owner.first_vertex;
+  int vertex = block.first_vertex;
   for (int a = 0; a < axis; ++a)
-    vertex += countBits (owner.cut[static_cast<std::size_t> (a)]);
-  return vertex + countBits (owner.cut[static_cast<std::size_t> (axis)] & (place.bit () - 1));
+    vertex += countBits (block.cut[static_cast<std::size_t> (a)]);
+  return vertex + countBits (block.cut[static_cast<std::size_t> (axis)] & ((std::uint64_t (1) << node) - 1));
 }
 
 } // namespace erkpa

@@ -32,11 +32,12 @@ struct GridBlock
   GridPoint first;                          ///< lowest node
   std::uint64_t known = 0;                  ///< nodes whose value is there
   std::uint64_t needed = 0;                 ///< nodes whose value is asked for
+  std::uint64_t near = 0;                   ///< known nodes that are in reach of the data
   std::uint64_t visited = 0;                ///< cells that were or will be looked at
   std::uint64_t active = 0;                 ///< cells that the surface crosses
   std::array<std::uint64_t, 3> cut{};       ///< per axis: edges from a node that carry a vertex
   int first_vertex = 0;                     ///< index of the block's first vertex
-  std::array<double, NODES> values{};       ///< f - iso, NaN where there is no surface to be
+  std::array<double, NODES> values{};       ///< f - iso, NaN where f is undefined
 };
 
 /** \brief Where a node lies: block and place in it. */
@@ -121,13 +122,24 @@ public:
   std::array<double, 8>
   cornerValues (const GridPoint &cell) const;
 
+  /** \brief Whether a corner of a cell is in reach of the data. */
+  bool
+  isNear (const GridPoint &cell) const;
+
   /** \brief Number the cut edges, block after block; returns how many there are. */
   int
   numberVertices ();
 
   /** \brief The vertex on the edge from \a node along \a axis; the edge must be cut. */
   int
-  vertexOnEdge (const GridPoint &node, int axis) const;
+  vertexOnEdge (const GridPoint &node, int axis) const
+  {
+    const GridPlace place = find (node);
+    return vertexOnEdge (block (place.block), place.local, axis);
+  }
+
+  static int
+  vertexOnEdge (const GridBlock &block, int node, int axis);
 
 private:
   static std::uint64_t
@@ -144,6 +156,20 @@ private:
   std::vector<GridBlock> blocks_;
   std::unordered_map<std::uint64_t, int> index_;
 };
+
+/** \brief A cube of nodes of a block that share one gathering of the field's nodes. */
+struct BlockPart
+{
+  std::uint64_t nodes; ///< its nodes, as bits
+  GridPoint first;     ///< lowest of them, in the block
+  int side;            ///< nodes along a side: 1, 2 or 4
+};
+
+/** \brief The parts of a block, not much larger than the support: larger ones would gather nodes in vain.
+  * \param[in] support typical support radius, in voxels
+  */
+const std::vector<BlockPart> &
+partsOfBlock (double support);
 
 /** \brief Corner 0..7 of a cell: bit 0 is x, bit 1 is y, bit 2 is z. */
 inline GridPoint

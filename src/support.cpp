@@ -9,23 +9,26 @@
 namespace erkpa
 {
 
+namespace
+{
+
+constexpr double ROUNDING = 1e-5; // searches measure in float: this share of a length is left for it
+
+} // namespace
+
 Support::Support (const ImplicitField &field) : field_ (field) {}
 
 void
 Support::gather (const Eigen::Vector3d &center, double extent)
 {
-  const FieldOptions &options = field_.options ();
-  const Eigen::Vector3f x = center.cast<float> ();
-  double reach = options.radius + extent;
-  if (options.radius == 0.0)
+  center_ = center;
+  if (field_.options ().radius > 0.0)
   {
-    // ε is 1-Lipschitz: a point |y - x| <= extent away reaches at most ε(x) + extent around itself.
-    field_.search ().nearestK (x, options.k, candidates_, found_);
-    const double kth = found_.empty () ? 0.0 : *std::max_element (found_.begin (), found_.end ());
-    reach = std::sqrt (kth) + 2.0 * extent;
+    center_radius_ = field_.options ().radius;
+    search (center, center_radius_ + extent);
   }
-  const double rounding = 1e-5 * (reach + center.norm ());
-  field_.search ().withinRadius (x, reach + rounding, candidates_, found_);
+  else
+    searchNearest (center, extent);
   std::sort (candidates_.begin (), candidates_.end ());
 
   const std::size_t n = candidates_.size ();
@@ -43,18 +46,48 @@ Support::gather (const Eigen::Vector3d &center, double extent)
 }
 
 void
+Support::search (const Eigen::Vector3d &center, double reach)
+{
+  const double rounding = ROUNDING * (reach + center.norm ());
+  field_.search ().withinRadius (center.cast<float> (), reach + rounding, candidates_, found_);
+}
+
+/** \brief Search as far as points of the ball reach to their k-th nodes.
+  *
+  * ε is 1-Lipschitz: a point at a distance d <= extent reaches at most ε(center) + d around itself. The radius at the
+  * last ball is the first guess, since balls follow each other in space; one search is much cheaper than two.
+  */
+void
+Support::searchNearest (const Eigen::Vector3d &center, double extent)
+{
+  const std::size_t k = std::min (static_cast<std::size_t> (field_.options ().k), field_.points ().size ());
+  double guess = 1.2 * (center_radius_ > 0.0 ? std::min (center_radius_, 2.0 * field_.typicalRadius ()) : field_.typicalRadius ());
+  candidates_.clear ();
+  constexpr double FARTHEST = 1e18; // its square is still a float
+  for (; center.norm () < FARTHEST && guess < FARTHEST; guess *= 2.0)
+  {
+    search (center, guess + 2.0 * extent);
+    if (found_.size () < k)
+      continue;
+    const auto kth = found_.begin () + static_cast<std::ptrdiff_t> (k - 1);
+    std::nth_element (found_.begin (), kth, found_.end ());
+    center_radius_ = std::sqrt (*kth);
+    if (center_radius_ <= guess)
+      return;
+  }
+  candidates_.clear ();
+  center_radius_ = 0.0;
+}
+
+void
 Support::measureDistances (const Eigen::Vector3d &x)
 {
   const std::size_t n = candidates_.size ();
-  double nearest = HUGE_VAL;
   for (std::size_t i = 0; i < n; ++i)
   {
     const double dx = px_[i] - x[0], dy = py_[i] - x[1], dz = pz_[i] - x[2];
     squared_[i] = dx * dx + dy * dy + dz * dz;
   }
-  for (std::size_t i = 0; i < n; ++i)
-    nearest = std::min (nearest, squared_[i]);
-  nearest_ = std::sqrt (nearest);
 }
 
 void
@@ -64,14 +97,34 @@ Support::measureRadius (const Eigen::Vector3d &x)
   radius_gradient_.setZero ();
   if (radius_ > 0.0 || squared_.empty ())
     return;
-  scratch_ = squared_;
+  // ε is 1-Lipschitz: only candidates within the centre's radius and the way to x can be among the k nearest.
+  const double bound = (center_radius_ + (x - center_).norm ()) + ROUNDING * (center_radius_ + x.norm ());
+  scratch_.clear ();
+  for (const double squared : squared_)
+    if (squared <= bound * bound)
+      scratch_.push_back (squared);
   const std::size_t k = std::min (static_cast<std::size_t> (field_.options ().k), scratch_.size ());
+  if (k == 0)
+    return;
   std::nth_element (scratch_.begin (), scratch_.begin () + static_cast<std::ptrdiff_t> (k - 1), scratch_.end ());
   const double kth = scratch_[k - 1];
   radius_ = std::sqrt (kth);
   const auto i = static_cast<std::size_t> (std::find (squared_.begin (), squared_.end (), kth) - squared_.begin ());
   if (radius_ > 0.0)
     radius_gradient_ = (x - Eigen::Vector3d (px_[i], py_[i], pz_[i])) / radius_;
+}
+
+double
+Support::quartileDistance () const
+{
+  if (nodes_.empty ())
+    return HUGE_VAL;
+  scratch_.clear ();
+  for (const SupportNode &node : nodes_)
+    scratch_.push_back (node.t);
+  const auto quartile = scratch_.begin () + static_cast<std::ptrdiff_t> (scratch_.size () / 4);
+  std::nth_element (scratch_.begin (), quartile, scratch_.end ());
+  return *quartile * radius_;
 }
 
 bool

@@ -62,17 +62,21 @@ public:
     return radius_gradient_;
   }
 
-  /** \brief Distance from x to the nearest node. */
+  /** \brief The distance within which a quarter of the support's nodes lie: small on the surface that the nodes
+    * show, near ε away from it, and near ε too at a few stray nodes. */
   double
-  nearestDistance () const
-  {
-    return nearest_;
-  }
+  quartileDistance () const;
 
   /** \brief Fewest nodes that define a field. */
   static constexpr std::size_t MIN_NODES = 4;
 
 private:
+  void
+  search (const Eigen::Vector3d &center, double reach);
+
+  void
+  searchNearest (const Eigen::Vector3d &center, double extent);
+
   void
   measureDistances (const Eigen::Vector3d &x);
 
@@ -80,13 +84,15 @@ private:
   measureRadius (const Eigen::Vector3d &x);
 
   const ImplicitField &field_;
+  Eigen::Vector3d center_ = Eigen::Vector3d::Zero (); // of the ball gathered for
+  double center_radius_ = 0.0;                        // ε there
   std::vector<int> candidates_;
   std::vector<double> px_, py_, pz_;  // positions of the candidates
   std::vector<double> squared_;       // squared distances from x
-  std::vector<double> scratch_;
+  mutable std::vector<double> scratch_;
   std::vector<float> found_;
   std::vector<SupportNode> nodes_;
-  double radius_ = 0.0, nearest_ = 0.0;
+  double radius_ = 0.0;
   Eigen::Vector3d radius_gradient_ = Eigen::Vector3d::Zero ();
 };
 

@@ -4,7 +4,6 @@
 #include "threads.h"
 
 #include <cmath>
-#include <limits>
 #include <string>
 #include <utility>
 
@@ -23,7 +22,7 @@ constexpr GridPoint AGAINST[3] = { { -1, 0, 0 }, { 0, -1, 0 }, { 0, 0, -1 } };
 bool
 isInReach (const LocalField &local, const PolygonizerOptions &options)
 {
-  return local.support ().nearestDistance () <=
+  return local.support ().quartileDistance () <=
          options.reach * local.support ().radius () + std::abs (options.iso_level);
 }
 
@@ -109,16 +108,22 @@ SurfaceTracker::evaluateRequested ()
 void
 SurfaceTracker::evaluateBlock (LocalField &local, GridBlock &block) const
 {
-  constexpr double HALF = 0.5 * (GridBlock::SIDE - 1);
-  const double half = HALF * grid_.voxelSize ();
-  local.gather (grid_.position (block.first).array () + half, std::sqrt (3.0) * half);
-  for (int node = 0; node < GridBlock::NODES; ++node)
+  for (const BlockPart &part : partsOfBlock (field_.typicalRadius () / grid_.voxelSize ()))
   {
-    if (!(block.needed >> node & 1))
+    const std::uint64_t nodes = block.needed & part.nodes;
+    if (nodes == 0)
       continue;
-    const double value = local.value (grid_.position (SparseGrid::pointAt (block, node))) - options_.iso_level;
-    block.values[static_cast<std::size_t> (node)] =
-        isInReach (local, options_) ? value : std::numeric_limits<double>::quiet_NaN ();
+    const double half = 0.5 * (part.side - 1) * grid_.voxelSize ();
+    local.gather (grid_.position (block.first + part.first).array () + half, std::sqrt (3.0) * half);
+    for (int node = 0; node < GridBlock::NODES; ++node)
+    {
+      if (!(nodes >> node & 1))
+        continue;
+      block.values[static_cast<std::size_t> (node)] =
+          local.value (grid_.position (SparseGrid::pointAt (block, node))) - options_.iso_level;
+      if (isInReach (local, options_))
+        block.near |= std::uint64_t (1) << node;
+    }
   }
   block.known |= block.needed;
   block.needed = 0;
@@ -135,7 +140,7 @@ SurfaceTracker::classify (const GridPoint &cell)
       return;
     inside |= values[corner] < 0.0 ? 1u << corner : 0u;
   }
-  if (inside == 0 || inside == 255)
+  if (inside == 0 || inside == 255 || !grid_.isNear (cell))
     return;
   const GridPlace place = grid_.place (cell);
   grid_.block (place.block).active |= place.bit ();
@@ -219,6 +224,8 @@ SurfaceTracker::project (LocalField &local, Eigen::Vector3d &position) const
     if (!sample.isDefined () || !(slope > 0.0) || !isInReach (local, options_))
       return false;
     const Eigen::Vector3d move = (options_.iso_level - sample.value) / slope * sample.gradient;
+    if (!(move.norm () < sample.radius + std::abs (options_.iso_level)))
+      return false;
     position += move;
     if (move.norm () < 0.1 * grid_.voxelSize ())
       return true;

@@ -79,31 +79,33 @@ placeVertices (const ImplicitField &field, const PolygonizerOptions &options, Sp
   const int channels = field.points ().channels;
   vertices.resize (static_cast<std::size_t> (grid.numberVertices ()), channels);
   const EdgeRoots roots (grid, options);
-  const double half = 0.5 * GridBlock::SIDE * grid.voxelSize ();
-
-  const auto place_block = [&] (LocalField &local, std::size_t index) {
+  const auto place_on_edge = [&] (LocalField &local, const GridBlock &block, int node, int axis) {
+    const GridPoint low = SparseGrid::pointAt (block, node);
+    const GridPlace high = grid.find ({ low.x + (axis == 0), low.y + (axis == 1), low.z + (axis == 2) });
+    LocalSample sample;
+    const Eigen::Vector3d position =
+        roots.find (local, low, axis, block.values[static_cast<std::size_t> (node)],
+                    grid.block (high.block).values[static_cast<std::size_t> (high.local)], sample);
+    storeVertex (local, sample, position, static_cast<std::size_t> (SparseGrid::vertexOnEdge (block, node, axis)),
+                 channels, vertices);
+  };
+  const auto place_in_block = [&] (LocalField &local, std::size_t index) {
     const GridBlock &block = grid.block (static_cast<int> (index));
-    if ((block.cut[0] | block.cut[1] | block.cut[2]) == 0)
-      return;
-    local.gather (grid.position (block.first).array () + half, std::sqrt (3.0) * half);
-    auto vertex = static_cast<std::size_t> (block.first_vertex);
-    for (int axis = 0; axis < 3; ++axis)
-      for (int node = 0; node < GridBlock::NODES; ++node)
-      {
-        if (!(block.cut[static_cast<std::size_t> (axis)] >> node & 1))
-          continue;
-        const GridPoint low = SparseGrid::pointAt (block, node);
-        const GridPlace high = grid.find ({ low.x + (axis == 0), low.y + (axis == 1), low.z + (axis == 2) });
-        LocalSample sample;
-        const Eigen::Vector3d position =
-            roots.find (local, low, axis, block.values[static_cast<std::size_t> (node)],
-                        grid.block (high.block).values[static_cast<std::size_t> (high.local)], sample);
-        storeVertex (local, sample, position, vertex++, channels, vertices);
-      }
+    for (const BlockPart &part : partsOfBlock (field.typicalRadius () / grid.voxelSize ()))
+    {
+      if (((block.cut[0] | block.cut[1] | block.cut[2]) & part.nodes) == 0)
+        continue;
+      const double half = 0.5 * part.side * grid.voxelSize ();
+      local.gather (grid.position (block.first + part.first).array () + half, std::sqrt (3.0) * half);
+      for (int axis = 0; axis < 3; ++axis)
+        for (int node = 0; node < GridBlock::NODES; ++node)
+          if (block.cut[static_cast<std::size_t> (axis)] & part.nodes & std::uint64_t (1) << node)
+            place_on_edge (local, block, node, axis);
+    }
   };
   parallelFor (
       static_cast<std::size_t> (grid.blockCount ()), options.threads, [&] { return LocalField (field); },
-      place_block, [&report] (const LocalField &local) {
+      place_in_block, [&report] (const LocalField &local) {
         report.evaluations += local.evaluations ();
         report.support_nodes += local.supportNodes ();
       });

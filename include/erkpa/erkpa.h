@@ -182,6 +182,7 @@ public:
   setViewPoint (float x, float y, float z)
   {
     options_.normals.view_point = Eigen::Vector3d (x, y, z);
+    options_.normals.has_view_point = true;
     use_sensor_origin_ = false;
   }
 

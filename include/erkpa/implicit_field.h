@@ -65,7 +65,7 @@ public:
 
   /** \param[in] points the nodes, with unit normals
     * \param[in] search finds the nodes; must know the same positions under the same indices
-    * \param[in] options settings that checkOptions accepts; k = 0 is settled here (chooseSupportSize)
+    * \param[in] options settings that checkOptions accepts; k = 0 is settled here
     */
   ImplicitField (std::shared_ptr<const OrientedPoints> points, NeighborSearch::ConstPtr search,
                  const FieldOptions &options);
@@ -121,11 +121,23 @@ public:
     return spacing_;
   }
 
+  /** \brief Size of the smallest feature the nodes can show: the spacing, or more where noise hides finer ones. */
+  double
+  featureSize () const
+  {
+    return feature_size_;
+  }
+
+  /** \brief The support radius at a typical node. */
+  double
+  typicalRadius () const;
+
 private:
   std::shared_ptr<const OrientedPoints> points_;
   NeighborSearch::ConstPtr search_;
   FieldOptions options_;
   double spacing_ = 0.0;
+  double feature_size_ = 0.0;
 };
 
 } // namespace erkpa

@@ -5,10 +5,12 @@
 #include "point_fields.h"
 #include "tool_error.h"
 
+#include <algorithm>
 #include <array>
 #include <cerrno>
 #include <cstdio>
 #include <cstring>
+#include <filesystem>
 #include <memory>
 
 namespace erkpa::tool
@@ -27,24 +29,49 @@ constexpr std::array<Format<Reader>, 7> READERS = {{{".pcd", readPcd},
                                                     {".obj", readObj},
                                                     {".off", readOff}}};
 
-std::string
+/** \brief The content of a file. */
+struct FileBytes
+{
+  std::unique_ptr<char[]> bytes; ///< not a string: that would write zeros first
+  std::size_t size = 0;
+  std::size_t capacity = 0;
+
+  void
+  grow (std::size_t new_capacity)
+  {
+    std::unique_ptr<char[]> larger (new char[new_capacity]);
+    std::copy_n (bytes.get (), size, larger.get ());
+    bytes.swap (larger);
+    capacity = new_capacity;
+  }
+};
+
+FileBytes
 readFile (const std::string &path)
 {
-  const std::unique_ptr<std::FILE, int (*) (std::FILE *)> file (std::fopen (path.c_str (), "rb"), std::fclose);
-  std::string bytes;
-  std::size_t got = 0;
-  errno = file ? 0 : errno;
-  while (file && (bytes.resize (got + (got > (1u << 16) ? got : (1u << 16))), true))
+  const auto fail = [&path] ()
   {
-    const std::size_t more = std::fread (bytes.data () + got, 1, bytes.size () - got, file.get ());
-    got += more;
-    if (more == 0)
-      break;
+    throw ToolError ("cannot read " + path + ": " + std::strerror (errno) +
+                     "; check the name and its permissions");
+  };
+  const std::unique_ptr<std::FILE, int (*) (std::FILE *)> file (std::fopen (path.c_str (), "rb"),
+                                                                std::fclose);
+  if (!file)
+    fail ();
+  std::error_code is_no_file; // a pipe, perhaps: its size is not known
+  const std::uintmax_t size = std::filesystem::file_size (path, is_no_file);
+  FileBytes result;
+  result.grow (is_no_file ? (1u << 16) : static_cast<std::size_t> (size) + 1);
+  while (const std::size_t got =
+             std::fread (result.bytes.get () + result.size, 1, result.capacity - result.size, file.get ()))
+  {
+    result.size += got;
+    if (result.size == result.capacity)
+      result.grow (2 * result.capacity);
   }
-  if (!file || std::ferror (file.get ()) != 0)
-    throw ToolError ("cannot read " + path + ": " + std::strerror (errno) + "; check the name and its permissions");
-  bytes.resize (got);
-  return bytes;
+  if (std::ferror (file.get ()) != 0)
+    fail ();
+  return result;
 }
 
 } // namespace
@@ -67,7 +94,8 @@ readCloud (const std::string &path)
   const Reader *reader = findFormat (READERS, path);
   if (reader == nullptr)
     throw ToolError ("cannot read " + path + ": the format is unknown; use one of " + readableFormats ());
-  RawCloud result = (*reader) (readFile (path), path);
+  FileBytes file = readFile (path);
+  RawCloud result = (*reader) (std::string_view (file.bytes.get (), file.size), path);
   for (const char *name : {"x", "y", "z"})
     if (!FieldReader (result.cloud, {name}).exists ())
       throw ToolError (path + ": the points have no field " + name + "; export them with x, y and z");

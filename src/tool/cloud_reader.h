@@ -19,11 +19,11 @@ struct RawCloud
 };
 
 /** \brief Reads a .pcd, .ply, .xyz, .xyzn, .pwn, .obj or .off file.
-  *
-  * PCL's own readers are not used: they take "foo" for a number and a short row for zeros, do not know the line, fall
-  * over a .pcd without header, and live in pcl_io, which loads VTK before main. Throws a ToolError that names the
-  * file and, where it is text, the line.
-  */
+ *
+ * PCL's own readers are not used: they take "foo" for a number and a short row for zeros, do not know the
+ * line, fall over a .pcd without header, and live in pcl_io, which loads VTK before main. Throws a ToolError
+ * that names the file and, where it is text, the line.
+ */
 RawCloud
 readCloud (const std::string &path);
 

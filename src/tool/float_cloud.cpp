@@ -21,7 +21,8 @@ using Triple = std::array<FieldReader, 3>;
 bool
 allExist (const Triple &fields)
 {
-  return std::all_of (fields.begin (), fields.end (), [] (const FieldReader &field) { return field.exists (); });
+  return std::all_of (fields.begin (), fields.end (),
+                      [] (const FieldReader &field) { return field.exists (); });
 }
 
 Triple
@@ -41,10 +42,10 @@ class ColourReader
 {
 public:
   explicit ColourReader (const pcl::PCLPointCloud2 &cloud)
-  : packed_ (cloud, {"rgb", "rgba"}),
-    channels_ {FieldReader (cloud, {"red", "diffuse_red", "r"}), FieldReader (cloud, {"green", "diffuse_green", "g"}),
-               FieldReader (cloud, {"blue", "diffuse_blue", "b"})},
-    is_packed_ (packed_.exists () && sizeOfType (packed_.datatype ()) == sizeof (std::uint32_t))
+      : packed_ (cloud, {"rgb", "rgba"}), channels_{FieldReader (cloud, {"red", "diffuse_red", "r"}),
+                                                    FieldReader (cloud, {"green", "diffuse_green", "g"}),
+                                                    FieldReader (cloud, {"blue", "diffuse_blue", "b"})},
+        is_packed_ (packed_.exists () && sizeOfType (packed_.datatype ()) == sizeof (std::uint32_t))
   {
   }
 
@@ -154,12 +155,14 @@ largestRounding (const pcl::PCLPointCloud2 &cloud)
 {
   double largest = 0.0;
   for (const FieldReader &coordinate : positionFields (cloud))
+  {
     for (std::size_t i = 0; i < sizeOf (cloud) && coordinate.datatype () != Field::FLOAT32; ++i)
     {
       const double value = coordinate (i);
       const double error = std::abs (value - static_cast<double> (static_cast<float> (value)));
       largest = error > largest ? error : largest; // false for what is not finite
     }
+  }
   return largest;
 }
 

@@ -13,9 +13,9 @@ namespace erkpa::tool
 std::vector<Eigen::Vector3d>
 positionsOf (const pcl::PCLPointCloud2 &cloud);
 
-/** \brief The cloud as the library takes it: x y z, and normals, intensity and rgb where the cloud has them, all
-  * FLOAT32, whatever types and names (nx ny nz; red green blue) the file had.
-  */
+/** \brief The cloud as the library takes it: x y z, and normals, intensity and rgb where the cloud has them,
+ * all FLOAT32, whatever types and names (nx ny nz; red green blue) the file had.
+ */
 pcl::PCLPointCloud2
 toFloatFields (const pcl::PCLPointCloud2 &cloud);
 

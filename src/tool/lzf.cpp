@@ -27,7 +27,8 @@ decompressLzf (std::string_view bytes, std::vector<std::uint8_t> &output)
       out += length;
       continue;
     }
-    // a repetition of what came out before: 3 bits of length, 13 of distance, 8 more of length where 3 are full
+    // a repetition of what came out before: 3 bits of length, 13 of distance, 8 more of length where 3 are
+    // full
     std::size_t length = control >> 5;
     if (bytes.size () - in < (length == 7 ? 2u : 1u))
       return false;
@@ -37,7 +38,8 @@ decompressLzf (std::string_view bytes, std::vector<std::uint8_t> &output)
     const std::size_t distance = ((control & 31u) << 8) + next () + 1;
     if (distance > out || length > output.size () - out)
       return false;
-    for (const std::size_t end = out + length; out < end; ++out) // byte by byte: source and target may overlap
+    for (const std::size_t end = out + length; out < end;
+         ++out) // byte by byte: source and target may overlap
       output[out] = output[out - distance];
   }
   return out == output.size ();

@@ -19,10 +19,12 @@ namespace
 struct Vertices
 {
   explicit Vertices (const pcl::PCLPointCloud2 &cloud)
-  : size (static_cast<std::size_t> (cloud.width) * cloud.height),
-    position {FieldReader (cloud, {"x"}), FieldReader (cloud, {"y"}), FieldReader (cloud, {"z"})},
-    normal {FieldReader (cloud, {"normal_x"}), FieldReader (cloud, {"normal_y"}), FieldReader (cloud, {"normal_z"})},
-    colour (cloud, {"rgb", "rgba"}), intensity (cloud, {"intensity"})
+      : size (static_cast<std::size_t> (cloud.width) * cloud.height), position{FieldReader (cloud, {"x"}),
+                                                                               FieldReader (cloud, {"y"}),
+                                                                               FieldReader (cloud, {"z"})},
+        normal{FieldReader (cloud, {"normal_x"}), FieldReader (cloud, {"normal_y"}),
+               FieldReader (cloud, {"normal_z"})},
+        colour (cloud, {"rgb", "rgba"}), intensity (cloud, {"intensity"})
   {
   }
 
@@ -123,7 +125,7 @@ writeVtkAttributes (const Vertices &vertices, OutputFile &file)
   file.writeNumber (vertices.size);
   if (vertices.colour.exists ())
   {
-    file.write ("\nCOLOR_SCALARS rgb 3\n");
+    file.write ("\nCOLOR_SCALARS Colors 3\n"); // the name PCL's loader looks for
     for (std::size_t i = 0; i < vertices.size; ++i)
       putColour (file, vertices.colour.bits (i));
   }

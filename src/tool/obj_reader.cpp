@@ -30,12 +30,14 @@ public:
   {
     Tokens tokens;
     while (scanner_.nextRow (tokens))
+    {
       if (tokens[0] == "v")
         readVertex (tokens);
       else if (tokens[0] == "vn")
         normals_.push_back (triple (tokens, 1));
       else if (tokens[0] == "f" && !normals_.empty ())
         std::for_each (tokens.begin () + 1, tokens.end (), [this] (std::string_view c) { readCorner (c); });
+    }
   }
 
   pcl::PCLPointCloud2
@@ -43,7 +45,8 @@ public:
   {
     normal_of_.resize (positions_.size (), UNKNOWN);
     // without faces the first normal belongs to the first vertex, and so on
-    for (std::size_t i = 0; !has_corners_ && normals_.size () == positions_.size () && i < positions_.size (); ++i)
+    for (std::size_t i = 0; !has_corners_ && normals_.size () == positions_.size () && i < positions_.size ();
+         ++i)
       normal_of_[i] = i;
     const bool has_normals = std::any_of (normal_of_.begin (), normal_of_.end (),
                                           [this] (std::size_t n) { return n < normals_.size (); });
@@ -59,7 +62,7 @@ public:
     {
       append (cloud, positions_[i]);
       if (has_normals) // zero stands for unknown: such normals are estimated
-        append (cloud, normal_of_[i] < normals_.size () ? normals_[normal_of_[i]] : Triple {});
+        append (cloud, normal_of_[i] < normals_.size () ? normals_[normal_of_[i]] : Triple{});
       if (has_colours)
         append (cloud, colours_[i]);
     }
@@ -88,7 +91,8 @@ private:
   {
     if (tokens.size () < first + 3)
       scanner_.fail ("the row has " + std::to_string (tokens.size () - 1) + " numbers where 3 are expected");
-    return {scanner_.number (tokens[first]), scanner_.number (tokens[first + 1]), scanner_.number (tokens[first + 2])};
+    return {scanner_.number (tokens[first]), scanner_.number (tokens[first + 1]),
+            scanner_.number (tokens[first + 2])};
   }
 
   /** \brief v x y z, v x y z weight, or v x y z red green blue */

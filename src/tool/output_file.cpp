@@ -3,6 +3,7 @@
 
 #include "tool_error.h"
 
+#include <fcntl.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
@@ -29,6 +30,26 @@ directoryOf (const std::string &path)
   return directory.empty () ? "." : directory;
 }
 
+/** \brief Whether a path names a device or a pipe, such as /dev/stdout: those are written to, not replaced.
+ */
+bool
+isStream (const std::string &path)
+{
+  std::error_code error;
+  const std::filesystem::file_status status = std::filesystem::status (path, error);
+  return path.rfind ("/dev/", 0) == 0 || std::filesystem::is_fifo (status) ||
+         std::filesystem::is_character_file (status) || std::filesystem::is_socket (status);
+}
+
+/** \brief The file that a link leads to: the link stays, its file is replaced. */
+std::string
+resolved (const std::string &path)
+{
+  std::error_code error;
+  const std::filesystem::path target = std::filesystem::canonical (path, error);
+  return error ? path : target.string ();
+}
+
 [[noreturn]] void
 failToWrite (const std::string &path, int error)
 {
@@ -44,22 +65,31 @@ OutputFile::check (const std::string &path)
   std::error_code error;
   if (std::filesystem::is_directory (path, error))
     failToWrite (path, EISDIR);
-  if (access (directoryOf (path).c_str (), W_OK | X_OK) != 0)
+  const std::string target = isStream (path) ? path : directoryOf (resolved (path));
+  if (access (target.c_str (), W_OK) != 0)
     failToWrite (path, errno);
 }
 
-OutputFile::OutputFile (std::string path) : path_ (std::move (path)), temporary_ (path_ + ".XXXXXX")
+OutputFile::OutputFile (std::string path) : path_ (std::move (path))
 {
-  descriptor_ = mkstemp (temporary_.data ());
-  if (descriptor_ < 0)
+  buffer_.reserve (BUFFER_SIZE);
+  if (isStream (path_))
   {
-    temporary_.clear ();
-    fail (errno);
+    descriptor_ = open (path_.c_str (), O_WRONLY | O_APPEND | O_CLOEXEC);
+    if (descriptor_ < 0)
+      fail (errno);
+    return;
   }
+  path_ = resolved (path_);
+  std::string name = path_ + ".XXXXXX";
+  descriptor_ = mkstemp (name.data ());
+  if (descriptor_ < 0)
+    fail (errno);
+  temporary_ = name;
   const mode_t mask = umask (0); // mkstemp makes it private; it shall be as readable as any new file
   umask (mask);
-  fchmod (descriptor_, 0666 & ~mask);
-  buffer_.reserve (BUFFER_SIZE);
+  if (fchmod (descriptor_, 0666 & ~mask) != 0)
+    fail (errno);
 }
 
 OutputFile::~OutputFile ()
@@ -89,13 +119,11 @@ OutputFile::writeNumber (float value)
 void
 OutputFile::writeNumber (double value, int digits)
 {
-  char text[64];
-  if (std::isnan (value))
-    write ("nan");
-  else
-    write (text, static_cast<std::size_t> (
-                     std::to_chars (text, text + sizeof (text), value, std::chars_format::general, digits).ptr -
-                     text));
+  char text[64] = "nan"; // to_chars would write -nan for some
+  char *end = text + 3;
+  if (!std::isnan (value))
+    end = std::to_chars (text, text + sizeof (text), value, std::chars_format::general, digits).ptr;
+  write (text, static_cast<std::size_t> (end - text));
 }
 
 void
@@ -130,7 +158,7 @@ OutputFile::close ()
 void
 OutputFile::commit ()
 {
-  if (std::rename (temporary_.c_str (), path_.c_str ()) != 0)
+  if (!temporary_.empty () && std::rename (temporary_.c_str (), path_.c_str ()) != 0)
     fail (errno);
   temporary_.clear ();
 }

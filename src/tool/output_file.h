@@ -10,10 +10,10 @@ namespace erkpa::tool
 {
 
 /** \brief A file that appears whole or not at all.
-  *
-  * Bytes go to a file beside it, which takes the name when everything is written. Until commit () an older file of
-  * that name stays as it is. Every failure throws a ToolError that names the file.
-  */
+ *
+ * Bytes go to a file beside it, which takes the name when everything is written. Until commit () an older
+ * file of that name stays as it is. Every failure throws a ToolError that names the file.
+ */
 class OutputFile
 {
 public:
@@ -63,7 +63,7 @@ private:
   fail (int error) const;
 
   std::string path_;
-  std::string temporary_; ///< empty once there is nothing to remove
+  std::string temporary_; ///< beside path_; empty where there is nothing to rename or remove
   int descriptor_ = -1;
   std::vector<char> buffer_;
 };

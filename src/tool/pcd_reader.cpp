@@ -112,14 +112,16 @@ layOut (const TextScanner &scanner, const PcdHeader &header, RawCloud &result)
   }
   constexpr std::size_t MOST = std::numeric_limits<std::uint32_t>::max ();
   const std::size_t points = header.points < MOST ? header.points : header.width * header.height;
-  if (header.width > MOST || header.height > MOST || (header.width > 0 && points != header.width * header.height))
+  if (header.width > MOST || header.height > MOST ||
+      (header.width > 0 && points != header.width * header.height))
     scanner.fail ("POINTS is not WIDTH times HEIGHT; write the file again");
   result.cloud.width = static_cast<std::uint32_t> (header.width > 0 ? header.width : points);
   result.cloud.height = static_cast<std::uint32_t> (header.width > 0 ? header.height : 1);
-  if (header.view_point.size () >= 3)
-    result.view_point =
-        Eigen::Vector3d (scanner.number (header.view_point[0]), scanner.number (header.view_point[1]),
-                         scanner.number (header.view_point[2]));
+  if (header.view_point.size () < 3)
+    return;
+  result.view_point.emplace ();
+  for (std::size_t a = 0; a < 3; ++a)
+    (*result.view_point)[static_cast<Eigen::Index> (a)] = scanner.number (header.view_point[a]);
 }
 
 void
@@ -127,7 +129,7 @@ requireBytes (std::size_t needed, std::string_view bytes, const std::string &pat
 {
   if (bytes.size () < needed)
     throw ToolError (path + ": the file ends early, " + std::to_string (needed - bytes.size ()) +
-                          " bytes are missing; write or copy it again");
+                     " bytes are missing; write or copy it again");
 }
 
 /** \brief All values of a field, then all of the next one: brings them together point by point. */
@@ -140,12 +142,14 @@ transpose (const std::vector<std::uint8_t> &columns, std::size_t points, pcl::PC
   {
     const std::size_t size = sizeOfType (field.datatype) * field.count;
     for (std::size_t i = 0; i < points; ++i, from += static_cast<std::ptrdiff_t> (size))
-      std::copy_n (from, size, cloud.data.begin () + static_cast<std::ptrdiff_t> (i * cloud.point_step + field.offset));
+      std::copy_n (from, size,
+                   cloud.data.begin () + static_cast<std::ptrdiff_t> (i * cloud.point_step + field.offset));
   }
 }
 
 void
-readCompressed (std::string_view body, const std::string &path, std::size_t points, pcl::PCLPointCloud2 &cloud)
+readCompressed (std::string_view body, const std::string &path, std::size_t points,
+                pcl::PCLPointCloud2 &cloud)
 {
   std::uint32_t sizes[2] = {0, 0}; // compressed, and what comes out
   requireBytes (sizeof (sizes), body, path);
@@ -177,7 +181,8 @@ readPcd (std::string_view bytes, const std::string &path)
   else if (header.data == "binary")
   {
     requireBytes (points * cloud.point_step, body, path);
-    cloud.data.assign (body.begin (), body.begin () + static_cast<std::ptrdiff_t> (points * cloud.point_step));
+    cloud.data.assign (body.begin (),
+                       body.begin () + static_cast<std::ptrdiff_t> (points * cloud.point_step));
   }
   else if (header.data == "binary_compressed")
     readCompressed (body, path, points, cloud);

@@ -41,9 +41,9 @@ datatypeOf (const TextScanner &scanner, std::string_view type)
     const char *name, *alias;
     std::uint8_t datatype;
   };
-  constexpr Type TYPES[] = {{"char", "int8", Field::INT8},     {"uchar", "uint8", Field::UINT8},
-                            {"short", "int16", Field::INT16},  {"ushort", "uint16", Field::UINT16},
-                            {"int", "int32", Field::INT32},    {"uint", "uint32", Field::UINT32},
+  constexpr Type TYPES[] = {{"char", "int8", Field::INT8},        {"uchar", "uint8", Field::UINT8},
+                            {"short", "int16", Field::INT16},     {"ushort", "uint16", Field::UINT16},
+                            {"int", "int32", Field::INT32},       {"uint", "uint32", Field::UINT32},
                             {"float", "float32", Field::FLOAT32}, {"double", "float64", Field::FLOAT64}};
   for (const Type &t : TYPES)
     if (type == t.name || type == t.alias)
@@ -84,7 +84,8 @@ readHeader (TextScanner &scanner)
     scanner.requireRow (tokens, "end_header");
     readEntry (scanner, tokens, header);
   }
-  if (header.format != "ascii" && header.format != "binary_little_endian" && header.format != "binary_big_endian")
+  if (header.format != "ascii" && header.format != "binary_little_endian" &&
+      header.format != "binary_big_endian")
     scanner.fail ("the format " + quoted (header.format) + " is unknown");
   return header;
 }
@@ -94,8 +95,10 @@ class PlyBody
 {
 public:
   PlyBody (TextScanner &scanner, std::string_view bytes, const std::string &path, const std::string &format)
-  : scanner_ (scanner), rest_ (bytes.substr (scanner.offset ())), path_ (path), is_text_ (format == "ascii"),
-    is_swapped_ ((format == "binary_big_endian") != (boost::endian::order::native == boost::endian::order::big))
+      : scanner_ (scanner), rest_ (bytes.substr (scanner.offset ())), path_ (path),
+        is_text_ (format == "ascii"),
+        is_swapped_ ((format == "binary_big_endian") !=
+                     (boost::endian::order::native == boost::endian::order::big))
   {
   }
 
@@ -105,7 +108,7 @@ public:
     pcl::PCLPointCloud2 cloud = element.layout;
     if (element.has_lists || element.count > std::numeric_limits<std::uint32_t>::max ())
       throw ToolError (path_ + ": the element '" + element.name +
-                             "' has lists, or too many entries, and cannot be read; export the points alone");
+                       "' has lists, or too many entries, and cannot be read; export the points alone");
     cloud.width = static_cast<std::uint32_t> (element.count);
     cloud.height = 1;
     if (is_text_)
@@ -122,15 +125,18 @@ private:
     const std::size_t needed = static_cast<std::size_t> (cloud.width) * cloud.point_step;
     if (rest_.size () < needed)
       throw ToolError (path_ + ": the file ends early, " + std::to_string (needed - rest_.size ()) +
-                             " bytes are missing; write or copy it again");
+                       " bytes are missing; write or copy it again");
     cloud.data.assign (rest_.begin (), rest_.begin () + static_cast<std::ptrdiff_t> (needed));
     rest_.remove_prefix (needed);
     for (std::size_t i = 0; is_swapped_ && i < cloud.width; ++i)
-      for (const Field &field : cloud.fields)
-      {
-        const auto value = cloud.data.begin () + static_cast<std::ptrdiff_t> (i * cloud.point_step + field.offset);
-        std::reverse (value, value + static_cast<std::ptrdiff_t> (sizeOfType (field.datatype)));
-      }
+      swapBytes (cloud, cloud.data.data () + i * cloud.point_step);
+  }
+
+  static void
+  swapBytes (const pcl::PCLPointCloud2 &layout, std::uint8_t *point)
+  {
+    for (const Field &field : layout.fields)
+      std::reverse (point + field.offset, point + field.offset + sizeOfType (field.datatype));
   }
 
   TextScanner &scanner_;
@@ -140,7 +146,7 @@ private:
   bool is_swapped_;
 };
 
-/** \brief Where PCL's writer leaves the sensor's position. */
+/** \brief The sensor's position as PCL's writer leaves it; it writes the origin where it knows none. */
 std::optional<Eigen::Vector3d>
 viewPointOf (const pcl::PCLPointCloud2 &camera)
 {
@@ -149,7 +155,8 @@ viewPointOf (const pcl::PCLPointCloud2 &camera)
   const FieldReader z (camera, {"view_pz"});
   if (camera.width != 1 || !x.exists () || !y.exists () || !z.exists ())
     return std::nullopt;
-  return Eigen::Vector3d (x (0), y (0), z (0));
+  const Eigen::Vector3d position (x (0), y (0), z (0));
+  return position.isZero (0.0) ? std::nullopt : std::make_optional (position);
 }
 
 } // namespace

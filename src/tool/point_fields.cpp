@@ -30,26 +30,27 @@ withType (std::uint8_t datatype, ActionT action)
 {
   switch (datatype)
   {
-  case Field::INT8:
-    return action (std::int8_t ());
-  case Field::UINT8:
-    return action (std::uint8_t ());
-  case Field::INT16:
-    return action (std::int16_t ());
-  case Field::UINT16:
-    return action (std::uint16_t ());
-  case Field::INT32:
-    return action (std::int32_t ());
-  case Field::UINT32:
-    return action (std::uint32_t ());
-  case Field::INT64:
-    return action (std::int64_t ());
-  case Field::UINT64:
-    return action (std::uint64_t ());
-  case Field::FLOAT32:
-    return action (float ());
-  default:
-    return action (double ());
+    // NOLINTNEXTLINE(bugprone-branch-clone): the branches differ in type
+    case Field::INT8:
+      return action (std::int8_t ());
+    case Field::UINT8:
+      return action (std::uint8_t ());
+    case Field::INT16:
+      return action (std::int16_t ());
+    case Field::UINT16:
+      return action (std::uint16_t ());
+    case Field::INT32:
+      return action (std::int32_t ());
+    case Field::UINT32:
+      return action (std::uint32_t ());
+    case Field::INT64:
+      return action (std::int64_t ());
+    case Field::UINT64:
+      return action (std::uint64_t ());
+    case Field::FLOAT32:
+      return action (float ());
+    default:
+      return action (double ());
   }
 }
 
@@ -58,12 +59,10 @@ template <typename T>
 void
 append (double value, std::vector<std::uint8_t> &data)
 {
-  T stored = T ();
-  if constexpr (std::is_floating_point_v<T>)
-    stored = static_cast<T> (value);
-  else if (value >= static_cast<double> (std::numeric_limits<T>::max ()))
-    stored = std::numeric_limits<T>::max ();
-  else if (value > static_cast<double> (std::numeric_limits<T>::lowest ()))
+  constexpr auto LEAST = static_cast<double> (std::numeric_limits<T>::lowest ());
+  constexpr auto MOST = static_cast<double> (std::numeric_limits<T>::max ());
+  T stored = value >= MOST ? std::numeric_limits<T>::max () : std::numeric_limits<T>::lowest ();
+  if (std::is_floating_point_v<T> || (value > LEAST && value < MOST))
     stored = static_cast<T> (value);
   const auto *bytes = reinterpret_cast<const std::uint8_t *> (&stored);
   data.insert (data.end (), bytes, bytes + sizeof (T));
@@ -99,27 +98,32 @@ columnsOf (const pcl::PCLPointCloud2 &cloud)
 }
 
 void
-appendRow (const TextScanner &scanner, const std::vector<std::string_view> &tokens, pcl::PCLPointCloud2 &cloud)
+appendRow (const TextScanner &scanner, const std::vector<std::string_view> &tokens,
+           pcl::PCLPointCloud2 &cloud)
 {
   auto token = tokens.begin ();
   for (const Field &field : cloud.fields)
+  {
     for (std::uint32_t i = 0; i < field.count; ++i, ++token)
     {
       const double value = scanner.number (*token);
       withType (field.datatype, [&] (auto zero) { append<decltype (zero)> (value, cloud.data); });
     }
+  }
 }
 
 void
 readRows (TextScanner &scanner, std::size_t count, pcl::PCLPointCloud2 &cloud)
 {
   const std::size_t columns = columnsOf (cloud);
-  const std::size_t fit = scanner.remaining () / (2 * columns) + 1; // a value takes two bytes at least
-  cloud.data.reserve (std::min (count, fit) * cloud.point_step);    // whatever a broken header asks for
+  const std::size_t possible =
+      scanner.remaining () / (2 * columns + 1) + 1; // whatever a broken header promises
+  cloud.data.reserve (std::min (count, possible) * cloud.point_step);
   std::vector<std::string_view> tokens;
   for (std::size_t i = 0; i < count; ++i)
   {
-    scanner.requireRow (tokens, "point " + std::to_string (i + 1) + " of " + std::to_string (count));
+    if (!scanner.nextRow (tokens))
+      scanner.failEarly ("point " + std::to_string (i + 1) + " of " + std::to_string (count));
     scanner.requireColumns (tokens, columns);
     appendRow (scanner, tokens, cloud);
   }
@@ -128,20 +132,24 @@ readRows (TextScanner &scanner, std::size_t count, pcl::PCLPointCloud2 &cloud)
 FieldReader::FieldReader (const pcl::PCLPointCloud2 &cloud, const std::vector<std::string> &names)
 {
   for (const std::string &name : names)
-    for (const Field &field : cloud.fields)
-      if (!exists () && field.name == name && field.count > 0)
-      {
-        cloud_ = &cloud;
-        offset_ = field.offset;
-        datatype_ = field.datatype;
-      }
+  {
+    const auto field = std::find_if (cloud.fields.begin (), cloud.fields.end (),
+                                     [&name] (const Field &f) { return f.name == name && f.count > 0; });
+    if (field == cloud.fields.end ())
+      continue;
+    cloud_ = &cloud;
+    offset_ = field->offset;
+    datatype_ = field->datatype;
+    return;
+  }
 }
 
 double
 FieldReader::operator() (std::size_t point) const
 {
   const std::uint8_t *from = cloud_->data.data () + point * cloud_->point_step + offset_;
-  return withType (datatype_, [from] (auto zero) { return static_cast<double> (load<decltype (zero)> (from)); });
+  return withType (datatype_,
+                   [from] (auto zero) { return static_cast<double> (load<decltype (zero)> (from)); });
 }
 
 std::uint32_t

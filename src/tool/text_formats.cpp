@@ -6,7 +6,6 @@
 #include "text_scanner.h"
 
 #include <algorithm>
-#include <cstring>
 
 namespace erkpa::tool
 {
@@ -42,6 +41,9 @@ readTable (TextScanner &scanner, Tokens &tokens, pcl::PCLPointCloud2 &cloud)
   if (tokens.size () == 6)
     appendFields (cloud, {"nx", "ny", "nz"});
   const std::size_t columns = tokens.size ();
+  const std::size_t rows_to_come =
+      scanner.remaining () / scanner.offset () + 1; // if all are as long as the first
+  cloud.data.reserve ((rows_to_come + rows_to_come / 8) * cloud.point_step);
   std::size_t count = 0;
   do
   {
@@ -79,55 +81,52 @@ readPwn (std::string_view bytes, const std::string &path)
     return result;
   }
   const std::size_t count = scanner.count (tokens[0]);
-  scanner.requireRow (tokens, "point 1 of " + std::to_string (count));
+  scanner.requireRow (tokens, "the first point");
   readTable (scanner, tokens, result.cloud);
-  if (result.cloud.width != count)
-    scanner.fail ("the file has " + std::to_string (result.cloud.width) + " rows where its first line promises " +
-                  std::to_string (count) + "; write or copy it again");
+  const std::size_t rows = result.cloud.width;
+  if (rows != count)
+    scanner.fail ("the file has " + std::to_string (rows) + " rows and promises " + std::to_string (count) +
+                  " on its first line; write or copy it again");
   return result;
 }
 
 namespace
 {
 
-/** \brief The layout that the keyword [C][N]OFF gives the rows; the colour may end with an alpha. */
-void
-layOutOff (const TextScanner &scanner, std::string_view keyword, std::size_t columns, pcl::PCLPointCloud2 &cloud)
+/** \brief What the keyword of an OFF file says of its rows. */
+struct OffKeyword
 {
-  const bool has_normals = keyword == "NOFF" || keyword == "CNOFF" || keyword == "NCOFF";
-  const bool has_colour = keyword == "COFF" || keyword == "CNOFF" || keyword == "NCOFF";
-  if (!has_normals && !has_colour && keyword != "OFF")
+  bool has_normals = false;
+  bool has_colour = false;
+};
+
+OffKeyword
+readKeyword (const TextScanner &scanner, std::string_view keyword)
+{
+  OffKeyword result;
+  result.has_normals = keyword == "NOFF" || keyword == "CNOFF" || keyword == "NCOFF";
+  result.has_colour = keyword == "COFF" || keyword == "CNOFF" || keyword == "NCOFF";
+  if (!result.has_normals && !result.has_colour && keyword != "OFF")
     scanner.fail ("the file begins with " + quoted (keyword) + "; save it as OFF, NOFF, COFF or CNOFF");
-  appendFields (cloud, {"x", "y", "z"});
-  if (has_normals)
-    appendFields (cloud, {"nx", "ny", "nz"});
-  if (has_colour)
-    appendFields (cloud, {"red", "green", "blue"});
-  if (has_colour && columns > columnsOf (cloud))
-    appendFields (cloud, {"alpha"});
+  return result;
 }
 
-/** \brief Colours are written as 0 to 1 or as 0 to 255; makes them 0 to 1. */
+/** \brief The fields of the rows, of which \a row is the first: colours are 0 to 255, or 0 to 1 with a point,
+ * and may end with an alpha. */
 void
-normalizeColours (pcl::PCLPointCloud2 &cloud)
+layOutOff (const OffKeyword &keyword, const Tokens &row, pcl::PCLPointCloud2 &cloud)
 {
-  double largest = 0.0;
-  const auto forEach = [&cloud] (auto action)
-  {
-    for (const Field &field : cloud.fields)
-      for (std::size_t i = 0; i < cloud.width && (field.name == "red" || field.name == "green" || field.name == "blue");
-           ++i)
-      {
-        std::uint8_t *bytes = cloud.data.data () + i * cloud.point_step + field.offset;
-        double value = 0.0;
-        std::memcpy (&value, bytes, sizeof (value));
-        value = action (value);
-        std::memcpy (bytes, &value, sizeof (value));
-      }
-  };
-  forEach ([&largest] (double value) { return largest = std::max (largest, value), value; });
-  if (largest > 1.0)
-    forEach ([] (double value) { return value / 255.0; });
+  appendFields (cloud, {"x", "y", "z"});
+  if (keyword.has_normals)
+    appendFields (cloud, {"nx", "ny", "nz"});
+  if (!keyword.has_colour)
+    return;
+  const bool has_point =
+      std::any_of (row.begin () + static_cast<std::ptrdiff_t> (std::min (columnsOf (cloud), row.size ())),
+                   row.end (), [] (std::string_view t) { return t.find ('.') != t.npos; });
+  for (const char *name : {"red", "green", "blue", "alpha"})
+    if (columnsOf (cloud) < row.size () || *name != 'a')
+      appendField (cloud, name, has_point ? Field::FLOAT64 : Field::UINT8);
 }
 
 } // namespace
@@ -139,17 +138,16 @@ readOff (std::string_view bytes, const std::string &path)
   TextScanner scanner (bytes, path);
   Tokens tokens;
   scanner.requireRow (tokens, "the keyword OFF");
-  const std::string keyword (tokens[0]);
+  const OffKeyword keyword = readKeyword (scanner, tokens[0]);
   tokens.erase (tokens.begin ());
   if (tokens.empty ())
     scanner.requireRow (tokens, "the line with the number of vertices");
   const std::size_t count = scanner.count (tokens[0]);
-  TextScanner ahead = scanner; // the first row tells whether a colour has three values or four
+  TextScanner ahead = scanner;
   ahead.nextRow (tokens);
-  layOutOff (scanner, keyword, tokens.size (), result.cloud);
+  layOutOff (keyword, tokens, result.cloud);
   readRows (scanner, count, result.cloud);
   setCount (result.cloud, count);
-  normalizeColours (result.cloud);
   return result;
 }
 

@@ -53,10 +53,10 @@ TextScanner::nextRow (std::vector<std::string_view> &tokens)
 }
 
 void
-TextScanner::requireRow (std::vector<std::string_view> &tokens, const std::string &expected)
+TextScanner::requireRow (std::vector<std::string_view> &tokens, const char *expected)
 {
   if (!nextRow (tokens))
-    fail ("the file ends early, " + expected + " is missing; write or copy it again");
+    failEarly (expected);
 }
 
 double
@@ -67,7 +67,8 @@ TextScanner::number (std::string_view token) const
   const auto [end, error] = std::from_chars (digits.data (), digits.data () + digits.size (), value);
   if (error == std::errc::invalid_argument || end != digits.data () + digits.size ())
     fail (quoted (token) + " is not a number");
-  if (error == std::errc::result_out_of_range) // from_chars leaves the value alone; strtod gives 0 or infinity
+  if (error ==
+      std::errc::result_out_of_range) // from_chars leaves the value alone; strtod gives 0 or infinity
     value = std::strtod (std::string (digits).c_str (), nullptr);
   return value;
 }
@@ -94,6 +95,12 @@ void
 TextScanner::fail (const std::string &what) const
 {
   throw ToolError (file_ + ", line " + std::to_string (line_) + ": " + what);
+}
+
+void
+TextScanner::failEarly (const std::string &missing) const
+{
+  fail ("the file ends early, " + missing + " is missing; write or copy it again");
 }
 
 std::string

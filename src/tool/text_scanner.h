@@ -14,20 +14,20 @@ class TextScanner
 {
 public:
   /** \param[in] text must outlive the scanner and the tokens it gives
-    * \param[in] file named in errors
-    */
+   * \param[in] file named in errors
+   */
   TextScanner (std::string_view text, std::string file) : text_ (text), file_ (std::move (file)) {}
 
   /** \brief Splits the next line that holds anything but blanks and comments (from # on).
-    * \param[out] tokens what blanks, tabs and commas separate
-    * \return false at the end of the text
-    */
+   * \param[out] tokens what blanks, tabs and commas separate
+   * \return false at the end of the text
+   */
   bool
   nextRow (std::vector<std::string_view> &tokens);
 
   /** \brief Like nextRow, but the end of the text is an error: \a expected is missing. */
   void
-  requireRow (std::vector<std::string_view> &tokens, const std::string &expected);
+  requireRow (std::vector<std::string_view> &tokens, const char *expected);
 
   /** \brief The value of a token; nan and inf are values, too. */
   double
@@ -44,6 +44,10 @@ public:
   /** \brief Throws a ToolError that names file and line. */
   [[noreturn]] void
   fail (const std::string &what) const;
+
+  /** \brief Throws the ToolError of a text that ends before \a missing. */
+  [[noreturn]] void
+  failEarly (const std::string &missing) const;
 
   /** \brief Where the line after the last row begins. */
   std::size_t

@@ -6,7 +6,8 @@
 namespace erkpa::tool
 {
 
-/** \brief Ends the program: its text is the one line the user reads, naming the option or file and the remedy. */
+/** \brief Ends the program: its text is the one line the user reads, naming the option or file and the
+ * remedy. */
 class ToolError : public std::runtime_error
 {
 public:

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Uses the library as a stranger does, from outside its tree. Built with and without AVX: Eigen's allocator differs
-// between the two, so memory that crosses into the library and is freed on the other side ends this program.
+// Uses the library as a stranger does, from outside its tree. Built with and without AVX: Eigen's allocator
+// differs between the two, so memory that crosses into the library and is freed on the other side ends this
+// program.
 #include <erkpa/erkpa.h>
 #include <erkpa/version.h>
 
@@ -98,7 +99,8 @@ reconstructSphere (const char *type)
   erkpa::ImplicitField::ConstPtr field = erkpa->computeField ();
   require (field != nullptr, type, "no field");
   erkpa.reset (); // the field outlives what made it
-  const erkpa::FieldSample outside = field->sample (CENTER.cast<double> () + 1.1 * RADIUS * Eigen::Vector3d::UnitX ());
+  const erkpa::FieldSample outside =
+      field->sample (CENTER.cast<double> () + 1.1 * RADIUS * Eigen::Vector3d::UnitX ());
   require (outside.value > 0.0 && outside.gradient.x () > 0.5, type, "wrong field");
   std::printf ("consumer: %s: %zu points, %zu triangles\n", type, points.size (), polygons.size ());
 }

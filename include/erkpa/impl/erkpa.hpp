@@ -57,7 +57,10 @@ ERKPA<PointNT>::makeField ()
   if (!input_)
     return { Status::NO_INPUT, "there is no input cloud: call setInputCloud () first" };
   if (use_sensor_origin_)
+  {
     options_.normals.view_point = input_->sensor_origin_.template head<3> ().template cast<double> ();
+    options_.normals.has_view_point = true;
+  }
   SearchFactory make_search;
   if (tree_)
     make_search = [this] (const OrientedPoints &points) { return makePclSearch<PointNT> (tree_, points); };

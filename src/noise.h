@@ -1,0 +1,26 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <erkpa/neighbor_search.h>
+#include <erkpa/oriented_points.h>
+
+namespace erkpa
+{
+
+/** \brief Neighbours of a support where the points carry no noise. */
+constexpr int CLEAN_SUPPORT = 20;
+
+/** \brief The side of the square that a node has to itself: median over the nodes, from the 8 nearest of each. */
+double
+measureSpacing (const OrientedPoints &points, const NeighborSearch &search);
+
+/** \brief How many neighbours it takes to average the noise out.
+  *
+  * The noise is the thickness of small neighbourhoods: the standard deviation of the 10 nearest nodes along their
+  * thinnest direction. A fit to k nodes within r tilts by about noise / (r sqrt k). Takes the smallest k, from
+  * CLEAN_SUPPORT on, for which this is below 0.01 in the median.
+  */
+int
+chooseSupportSize (const OrientedPoints &points, const NeighborSearch &search);
+
+} // namespace erkpa

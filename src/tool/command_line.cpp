@@ -1,0 +1,280 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "command_line.h"
+
+#include "cloud_reader.h"
+#include "mesh_writer.h"
+#include "option_values.h"
+
+#include <boost/program_options.hpp>
+
+#include <algorithm>
+#include <sstream>
+
+namespace po = boost::program_options;
+
+namespace erkpa::tool
+{
+
+namespace
+{
+
+constexpr const char *SYNTAX = "erkpa_reconstruct INPUT OUTPUT [options]";
+
+/** \brief The value of -evaluate: two words, no more and no fewer, so that file names may follow. */
+class TwoFiles : public po::typed_value<std::vector<std::string>>
+{
+public:
+  TwoFiles () : po::typed_value<std::vector<std::string>> (nullptr)
+  {
+    value_name ("QUERY.xyz OUT.txt");
+  }
+
+  unsigned
+  min_tokens () const override
+  {
+    return 2;
+  }
+
+  unsigned
+  max_tokens () const override
+  {
+    return 2;
+  }
+};
+
+template <typename T>
+std::string
+withDefault (const std::string &text, const T &value, const std::string &meaning = "")
+{
+  std::ostringstream stream;
+  stream << text << " (default: " << value << (meaning.empty () ? "" : ", ") << meaning << ")";
+  return stream.str ();
+}
+
+po::typed_value<std::string> *
+word (const char *name)
+{
+  return po::value<std::string> ()->value_name (name);
+}
+
+po::options_description
+describeField (const FieldOptions &field)
+{
+  po::options_description description;
+  description.add_options () //
+      ("k", word ("N"),
+       withDefault ("the support of the field reaches to the N-th nearest point", field.k,
+                    "chosen from the noise")
+           .c_str ()) //
+      ("radius", word ("R"),
+       withDefault ("constant support radius instead of k", field.radius, "use k").c_str ()) //
+      ("order", word ("NAME"),
+       withDefault (listNames (ORDERS) + ": what the field reproduces exactly", nameOf (ORDERS, field.order))
+           .c_str ()) //
+      ("constraint", word ("NAME"),
+       withDefault (listNames (CONSTRAINTS) + ": what the points ask of the field",
+                    nameOf (CONSTRAINTS, field.constraint))
+           .c_str ()) //
+      ("sharp", po::value<std::vector<std::string>> ()->value_name ("a,b,c,d"),
+       "a sharp edge where the plane a x + b y + c z + d = 0 cuts the surface; may be repeated (default: "
+       "none)");
+  return description;
+}
+
+po::options_description
+describeMeshing (const PolygonizerOptions &polygonizer)
+{
+  po::options_description description;
+  description.add_options () //
+      ("voxel", word ("S"),
+       withDefault ("side of a grid cell", polygonizer.voxel_size, "from the spacing of the points")
+           .c_str ()) //
+      ("resolution", word ("N"),
+       withDefault ("instead: grid cells along the longest side of the cloud", polygonizer.resolution,
+                    "use voxel")
+           .c_str ()) //
+      ("iso", word ("V"),
+       withDefault ("the surface is f = V, positive outside", polygonizer.iso_level).c_str ()) //
+      ("viewpoint", word ("x,y,z"),
+       "where the sensor stood, for the sign of estimated normals (default: as a .pcd or .ply file says; "
+       "without, "
+       "normals point outwards)") //
+      ("threads", word ("N"),
+       withDefault ("number of threads; the mesh does not depend on it", polygonizer.threads,
+                    "all processors")
+           .c_str ()) //
+      ("evaluate", new TwoFiles,
+       "also write x y z f gx gy gz at the points of QUERY.xyz, nan where f is not defined (default: "
+       "none)")                                                                                        //
+      ("report", word ("FILE.json"), "also write what was done, and how long it took (default: none)") //
+      ("help,h", "print this text, as -h does") ("version", "print the version");
+  return description;
+}
+
+po::options_description
+describe (const Options &defaults)
+{
+  po::options_description description;
+  description.add (describeField (defaults.field)).add (describeMeshing (defaults.polygonizer));
+  return description;
+}
+
+/** \brief The words that belong to no option. */
+std::vector<std::string>
+fileNames (const po::parsed_options &parsed)
+{
+  std::vector<std::string> names;
+  for (const po::option &option : parsed.options)
+    if (option.string_key.empty ())
+      names.insert (names.end (), option.value.begin (), option.value.end ());
+  return names;
+}
+
+/** \brief Gives \a take the text of an option that was given. */
+template <typename TakeT>
+void
+ifGiven (const po::variables_map &variables, const char *name, TakeT take)
+{
+  if (variables.count (name) > 0)
+    take (OptionText{name, variables[name].as<std::string> ()});
+}
+
+void
+takeSharpEdges (const std::vector<std::string> &texts, FieldOptions &field)
+{
+  for (const std::string &text : texts)
+  {
+    const OptionText option{"sharp", text};
+    const std::vector<double> numbers = toNumbers (option, "a,b,c,d");
+    SharpSurface::ConstPtr plane;
+    const Outcome outcome = makeSharpPlane (std::vector<float> (numbers.begin (), numbers.end ()), plane);
+    if (!outcome.ok ())
+      option.refuse (outcome.message);
+    field.sharp_surfaces.push_back (plane);
+  }
+}
+
+void
+takeOptions (const po::variables_map &variables, CommandLine &line)
+{
+  constexpr int LEAST_K = 4; // as FieldOptions::k says
+  FieldOptions &field = line.options.field;
+  PolygonizerOptions &polygonizer = line.options.polygonizer;
+  NormalOptions &normals = line.options.normals;
+  ifGiven (variables, "k", [&] (const OptionText &o) { field.k = toCount (o, LEAST_K); });
+  ifGiven (variables, "radius", [&] (const OptionText &o) { field.radius = toLength (o); });
+  ifGiven (variables, "order", [&] (const OptionText &o) { field.order = toEnum (o, ORDERS); });
+  ifGiven (variables, "constraint",
+           [&] (const OptionText &o) { field.constraint = toEnum (o, CONSTRAINTS); });
+  ifGiven (variables, "voxel", [&] (const OptionText &o) { polygonizer.voxel_size = toLength (o); });
+  ifGiven (variables, "resolution", [&] (const OptionText &o) { polygonizer.resolution = toCount (o, 1); });
+  ifGiven (variables, "iso", [&] (const OptionText &o) { polygonizer.iso_level = toNumber (o); });
+  ifGiven (variables, "threads",
+           [&] (const OptionText &o) { polygonizer.threads = normals.threads = toCount (o, 1); });
+  ifGiven (variables, "viewpoint",
+           [&] (const OptionText &o)
+           {
+             normals.view_point = Eigen::Vector3d (toNumbers (o, "x,y,z").data ());
+             normals.has_view_point = true;
+           });
+  ifGiven (variables, "report", [&] (const OptionText &o) { line.report = o.text; });
+  if (variables.count ("sharp") > 0)
+    takeSharpEdges (variables["sharp"].as<std::vector<std::string>> (), field);
+  if (variables.count ("evaluate") > 0)
+  {
+    const auto &files = variables["evaluate"].as<std::vector<std::string>> ();
+    line.query = files.at (0);
+    line.values = files.at (1);
+  }
+}
+
+void
+refuseBoth (const po::variables_map &variables, const char *one, const char *other)
+{
+  if (variables.count (one) > 0 && variables.count (other) > 0)
+    throw ToolError (std::string ("options -") + one + " and -" + other +
+                     " exclude each other; give one of them");
+}
+
+void
+takeFileNames (const std::vector<std::string> &names, CommandLine &line)
+{
+  if (names.size () != 2)
+    throw ToolError ((names.size () < 2 ? "a file name is missing" : "too many file names: " + names[2]) +
+                     "; the syntax is " + SYNTAX + ", see -help");
+  line.input = names[0];
+  line.output = names[1];
+  if (!isReadable (line.input))
+    throw ToolError ("cannot read " + line.input + ": the format is unknown; use one of " +
+                     readableFormats ());
+  if (!isWritable (line.output))
+    throw ToolError ("cannot write " + line.output + ": the format is unknown; use one of " +
+                     writableFormats ());
+  if (!line.query.empty () && !isReadable (line.query))
+    throw ToolError ("option -evaluate: cannot read " + line.query + ": the format is unknown; use one of " +
+                     readableFormats ());
+  const bool repeats = line.report == line.output || line.values == line.output ||
+                       (!line.report.empty () && line.report == line.values);
+  if (repeats)
+    throw ToolError ("OUTPUT, -report and -evaluate must not write the same file; give them different names");
+}
+
+} // namespace
+
+CommandLine
+parseCommandLine (int argc, const char *const *argv)
+{
+  CommandLine line;
+  const po::options_description description = describe (line.options);
+  // no abbreviations, and one dash will do for a long name; short names are there for the sake of unknown
+  // options, which would count as file names without them
+  using style = po::command_line_style::style_t;
+  constexpr int STYLE = style::allow_long | style::long_allow_adjacent | style::long_allow_next |
+                        style::allow_long_disguise | style::allow_short | style::allow_dash_for_short |
+                        style::short_allow_next;
+  po::variables_map variables;
+  try
+  {
+    const po::parsed_options parsed =
+        po::command_line_parser (argc, argv).options (description).style (STYLE).run ();
+    po::store (parsed, variables);
+    line.help = variables.count ("help") > 0;
+    line.version = variables.count ("version") > 0;
+    if (line.help || line.version)
+      return line;
+    refuseBoth (variables, "voxel", "resolution");
+    refuseBoth (variables, "k", "radius");
+    takeOptions (variables, line);
+    takeFileNames (fileNames (parsed), line);
+  }
+  catch (const po::error &error)
+  {
+    throw ToolError (std::string (error.what ()) + "; see -help");
+  }
+  return line;
+}
+
+std::string
+helpText ()
+{
+  std::ostringstream text;
+  text << "Reconstruct a surface with sharp edges from a point cloud by enriched reproducing kernel "
+          "approximation.\n"
+       << "Syntax is: " << SYNTAX << "\n"
+       << "  INPUT:  " << readableFormats () << "; points with or without normals\n"
+       << "  OUTPUT: " << writableFormats () << "\n"
+       << "  where options (with one dash or two) are:\n";
+  const po::options_description description = describe (Options ());
+  for (const auto &option : description.options ())
+  {
+    const bool has_value = option->semantic ()->max_tokens () > 0;
+    std::string syntax = "-" + option->long_name ();
+    if (has_value)
+      syntax += " " + option->format_parameter ();
+    syntax.resize (std::max<std::size_t> (syntax.size (), 29), ' ');
+    text << "    " << syntax << " = " << option->description () << "\n";
+  }
+  return text.str ();
+}
+
+} // namespace erkpa::tool

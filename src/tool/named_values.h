@@ -1,0 +1,52 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <erkpa/reconstruction.h>
+
+#include <array>
+#include <string>
+
+namespace erkpa::tool
+{
+
+/** \brief A value of an enum and its name on the command line and in the report. */
+template <typename EnumT>
+struct NamedValue
+{
+  const char *name;
+  EnumT value;
+};
+
+constexpr std::array<NamedValue<Order>, 4> ORDERS = {{{"constant", Order::CONSTANT},
+                                                      {"linear", Order::LINEAR},
+                                                      {"spherical", Order::SPHERICAL},
+                                                      {"quadratic", Order::QUADRATIC}}};
+
+constexpr std::array<NamedValue<Constraint>, 1> CONSTRAINTS = {{{"hermite", Constraint::HERMITE}}};
+
+constexpr std::array<NamedValue<Orientation>, 3> ORIENTATIONS = {{{"none", Orientation::NONE},
+                                                                  {"view_point", Orientation::VIEW_POINT},
+                                                                  {"propagation", Orientation::PROPAGATION}}};
+
+template <typename EnumT, std::size_t N>
+std::string
+nameOf (const std::array<NamedValue<EnumT>, N> &values, EnumT value)
+{
+  for (const NamedValue<EnumT> &candidate : values)
+    if (candidate.value == value)
+      return candidate.name;
+  return "";
+}
+
+/** \brief "a|b|c" */
+template <typename EnumT, std::size_t N>
+std::string
+listNames (const std::array<NamedValue<EnumT>, N> &values)
+{
+  std::string list;
+  for (const NamedValue<EnumT> &candidate : values)
+    list += (list.empty () ? "" : "|") + std::string (candidate.name);
+  return list;
+}
+
+} // namespace erkpa::tool

@@ -1,0 +1,192 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "run.h"
+
+#include "cloud_reader.h"
+#include "float_cloud.h"
+#include "mesh_writer.h"
+#include "output_file.h"
+#include "progress_line.h"
+#include "report.h"
+#include "step.h"
+#include "tool_error.h"
+
+#include <erkpa/erkpa.h>
+
+#include <memory>
+
+namespace erkpa::tool
+{
+
+namespace
+{
+
+using pcl::console::print_info;
+using pcl::console::print_warn;
+
+/** \brief Keeps PCL's messages back while it lives: what the library has to say reaches the user once, as our
+ * error or among our results.
+ */
+class QuietLibrary
+{
+public:
+  QuietLibrary ()
+  {
+    pcl::console::setVerbosityLevel (pcl::console::L_ALWAYS);
+  }
+
+  ~QuietLibrary ()
+  {
+    pcl::console::setVerbosityLevel (level_);
+  }
+
+  QuietLibrary (const QuietLibrary &) = delete;
+  QuietLibrary &
+  operator= (const QuietLibrary &) = delete;
+
+private:
+  pcl::console::VERBOSITY_LEVEL level_ = pcl::console::getVerbosityLevel ();
+};
+
+/** \brief One run of the program, step by step. */
+class Reconstruction
+{
+public:
+  explicit Reconstruction (CommandLine line) : line_ (std::move (line))
+  {
+    total_.tic ();
+  }
+
+  void
+  run ()
+  {
+    for (const std::string *path : {&line_.output, &line_.values, &line_.report})
+      if (!path->empty ()) // better now than after the work
+        OutputFile::check (*path);
+    const pcl::PCLPointCloud2 cloud = load ();
+    reconstruct (cloud);
+    writeFiles ();
+  }
+
+private:
+  pcl::PCLPointCloud2
+  load ()
+  {
+    if (!line_.query.empty ())
+      queries_ = positionsOf (readCloud (line_.query).cloud);
+    Step step ("Loading", line_.input);
+    const RawCloud raw = readCloud (line_.input);
+    pcl::PCLPointCloud2 cloud = toFloatFields (raw.cloud);
+    rounding_ = largestRounding (raw.cloud);
+    NormalOptions &normals = line_.options.normals;
+    if (!normals.has_view_point && raw.view_point)
+    {
+      normals.has_view_point = true;
+      normals.view_point = *raw.view_point;
+    }
+    times_.read = step.done (static_cast<std::size_t> (cloud.width) * cloud.height, "points");
+    return cloud;
+  }
+
+  void
+  reconstruct (const pcl::PCLPointCloud2 &cloud)
+  {
+    Step step ("Computing", "the surface");
+    {
+      const QuietLibrary quiet;
+      ProgressLine progress;
+      const Outcome outcome =
+          erkpa::reconstruct (cloud, line_.options, mesh_, report_, &field_, progress.callback ());
+      if (!outcome.ok ())
+        throw ToolError ("cannot reconstruct " + line_.input + ": " + outcome.message);
+    }
+    step.done (report_.triangles, "triangles");
+    tell ();
+  }
+
+  /** \brief What is worth knowing about the points and the mesh. */
+  void
+  tell () const
+  {
+    const PointCounts &points = report_.points;
+    if (points.used < points.read)
+      print_info ("  left out %zu points that are not finite and %zu that repeat another\n",
+                  points.not_finite, points.duplicate);
+    const bool is_view_point = report_.orientation == Orientation::VIEW_POINT;
+    if (points.without_normal > 0)
+      print_info ("  estimated %zu normals, oriented %s\n", points.without_normal,
+                  is_view_point ? "towards the view point" : "from neighbour to neighbour");
+    print_info ("  %zu vertices, %zu pieces, %zu boundary edges\n", report_.vertices,
+                report_.topology.components, report_.topology.boundary_edges);
+    constexpr double TOLERABLE = 0.1; // of the spacing: beyond, the surface shows steps
+    if (rounding_ > TOLERABLE * report_.spacing)
+      print_warn ("%s: as floats the coordinates are off by up to %g; subtract an offset from them first\n",
+                  line_.input.c_str (), rounding_);
+  }
+
+  /** \brief Writes all files before any of them takes its name. */
+  void
+  writeFiles ()
+  {
+    std::vector<std::unique_ptr<OutputFile>> files;
+    const auto newFile = [&files] (const std::string &path) -> OutputFile &
+    {
+      files.push_back (std::make_unique<OutputFile> (path));
+      return *files.back ();
+    };
+    if (!line_.values.empty ())
+      evaluate (newFile (line_.values));
+    Step step ("Saving", line_.output);
+    writeMesh (mesh_, line_.output, newFile (line_.output));
+    times_.write = step.done (mesh_.polygons.size (), "triangles");
+    times_.total = total_.toc () * 1e-3;
+    if (!line_.report.empty ())
+      writeReport (line_, report_, times_, newFile (line_.report));
+    for (const std::unique_ptr<OutputFile> &file : files)
+      file->commit ();
+  }
+
+  void
+  evaluate (OutputFile &file)
+  {
+    constexpr int DIGITS = 9; // tells any two floats apart
+    Step step ("Evaluating", line_.query);
+    std::vector<FieldSample> samples;
+    field_->evaluate (queries_, samples, line_.options.polygonizer.threads);
+    for (std::size_t i = 0; i < queries_.size (); ++i)
+    {
+      for (const double coordinate : queries_[i])
+      {
+        file.writeNumber (coordinate, DIGITS);
+        file.write (" ");
+      }
+      file.writeNumber (samples[i].value, DIGITS);
+      for (const double component : samples[i].gradient)
+      {
+        file.write (" ");
+        file.writeNumber (component, DIGITS);
+      }
+      file.write ("\n");
+    }
+    file.close ();
+    times_.evaluate = step.done (queries_.size (), "points");
+  }
+
+  CommandLine line_;
+  std::vector<Eigen::Vector3d> queries_;
+  double rounding_ = 0.0;
+  pcl::PolygonMesh mesh_;
+  ImplicitField::ConstPtr field_;
+  Report report_;
+  ToolTimes times_;
+  pcl::console::TicToc total_;
+};
+
+} // namespace
+
+void
+run (const CommandLine &line)
+{
+  Reconstruction (line).run ();
+}
+
+} // namespace erkpa::tool
