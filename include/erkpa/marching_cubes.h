@@ -17,7 +17,7 @@ struct PolygonizerOptions
   int resolution = 0;       ///< cells along the longest side of the cloud; 0 = from the spacing of the points
   double iso_level = 0.0;   ///< the surface is f = iso_level, in the cloud's unit; positive is outside
   double voxel_per_feature = 0.7; ///< the default voxel, in ImplicitField::featureSize ()
-  double reach = 0.8;       ///< no surface where fewer than a quarter of the support's nodes lie within this share
+  double reach = 0.9;       ///< no surface where fewer than a quarter of the support's nodes lie within this share
                             ///< of its radius
   double border_offset = 0.45; ///< an open surface ends where the nodes' centroid lies this share of the support
                                ///< radius aside (about 0.27 on the border of evenly spread points)

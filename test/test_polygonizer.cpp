@@ -1,0 +1,261 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "cell_loops.h"
+#include "loop_triangulation.h"
+#include "shapes.h"
+
+#include <erkpa/marching_cubes.h>
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <array>
+
+using erkpa::PolygonizerOptions;
+using erkpa::Status;
+using erkpa::TriangleMesh;
+using Eigen::Vector3d;
+
+namespace
+{
+
+TriangleMesh
+meshOf (const erkpa::ImplicitField &field, const PolygonizerOptions &options = {},
+        erkpa::PolygonizerReport *report = nullptr)
+{
+  TriangleMesh mesh;
+  erkpa::PolygonizerReport own;
+  const erkpa::Outcome outcome = erkpa::polygonize (field, options, mesh, report ? *report : own);
+  EXPECT_TRUE (outcome.ok ()) << outcome.message;
+  return mesh;
+}
+
+PolygonizerOptions
+resolution (int cells)
+{
+  PolygonizerOptions options;
+  options.resolution = cells;
+  return options;
+}
+
+} // namespace
+
+TEST (CellLoops, UseEachCrossingOnceInEverySignPattern)
+{
+  std::mt19937 random (1);
+  std::uniform_real_distribution<double> size (0.01, 1.0);
+  for (int pattern = 0; pattern < 256 * 20; ++pattern)
+  {
+    std::array<double, 8> values;
+    for (std::size_t corner = 0; corner < 8; ++corner)
+      values[corner] = (pattern >> corner & 1 ? -1.0 : 1.0) * size (random);
+    const erkpa::CellLoops loops = erkpa::traceLoops (values);
+    std::array<int, 12> uses{};
+    for (int loop = 0; loop < loops.count; ++loop)
+    {
+      EXPECT_GE (loops.lengths[static_cast<std::size_t> (loop)], 3);
+      for (int i = 0; i < loops.lengths[static_cast<std::size_t> (loop)]; ++i)
+        ++uses[static_cast<std::size_t> (loops.edges[static_cast<std::size_t> (loop)][static_cast<std::size_t> (i)])];
+    }
+    for (int e = 0; e < 12; ++e)
+    {
+      const erkpa::CellEdge edge = erkpa::cellEdge (e);
+      const bool crossed = (values[static_cast<std::size_t> (edge.corner)] < 0.0) !=
+                           (values[static_cast<std::size_t> (edge.corner | 1 << edge.axis)] < 0.0);
+      EXPECT_EQ (uses[static_cast<std::size_t> (e)], crossed ? 1 : 0);
+    }
+  }
+}
+
+TEST (CellLoops, RunCounterClockwiseSeenFromOutside)
+{
+  std::array<double, 8> values;
+  values.fill (1.0);
+  values[0] = -1.0;
+  const erkpa::CellLoops loops = erkpa::traceLoops (values);
+  ASSERT_EQ (loops.count, 1);
+  ASSERT_EQ (loops.lengths[0], 3);
+  std::array<Vector3d, 3> at;
+  for (std::size_t i = 0; i < 3; ++i)
+    at[i] = 0.5 * Vector3d::Unit (erkpa::cellEdge (loops.edges[0][i]).axis);
+  EXPECT_GT ((at[1] - at[0]).cross (at[2] - at[0]).sum (), 0.0); // away from the corner inside
+}
+
+TEST (Polygonizer, MakesAClosedSphereOfTheRightVolumeAndArea)
+{
+  const TriangleMesh mesh = meshOf (*shapes::field (shapes::sphere (4000, 2.0, { 1.0, 2.0, 3.0 })));
+  EXPECT_MESH_CONTRACT (mesh, true);
+  const erkpa::MeshTopology topology = erkpa::measureTopology (mesh);
+  EXPECT_EQ (topology.components, 1u);
+  EXPECT_EQ (topology.euler, 2);
+  EXPECT_NEAR (shapes::volume (mesh), 4.0 / 3.0 * M_PI * 8.0, 0.005 * 4.0 / 3.0 * M_PI * 8.0);
+  EXPECT_NEAR (shapes::area (mesh), 4.0 * M_PI * 4.0, 0.005 * 4.0 * M_PI * 4.0);
+  for (std::size_t v = 0; v < mesh.vertices.size (); ++v)
+  {
+    const Vector3d out = mesh.vertices[v].cast<double> () - Vector3d (1.0, 2.0, 3.0);
+    EXPECT_NEAR (out.norm (), 2.0, 1e-4);
+    EXPECT_GT (out.normalized ().dot (mesh.normals[v].cast<double> ()), 0.9999);
+  }
+}
+
+TEST (Polygonizer, MakesATorusOfGenusOne)
+{
+  const TriangleMesh mesh = meshOf (*shapes::field (shapes::torus (8000, 1.0, 0.4)));
+  EXPECT_MESH_CONTRACT (mesh, true);
+  EXPECT_EQ (erkpa::measureTopology (mesh).euler, 0);
+  const double volume = 2.0 * M_PI * M_PI * 0.16, area = 4.0 * M_PI * M_PI * 0.4;
+  EXPECT_NEAR (shapes::volume (mesh), volume, 0.01 * volume);
+  EXPECT_NEAR (shapes::area (mesh), area, 0.01 * area);
+}
+
+TEST (Polygonizer, FillsABoxToItsEdgesWhenTheyAreSharp)
+{
+  const Vector3d half (1.0, 0.7, 0.5);
+  const shapes::Samples box = shapes::box (8000, half);
+  erkpa::FieldOptions sharp;
+  for (const Eigen::Vector4d &bisector : shapes::boxBisectors (half))
+    sharp.sharp_surfaces.push_back (shapes::plane (bisector));
+  const TriangleMesh rounded = meshOf (*shapes::field (box), resolution (50));
+  const TriangleMesh exact = meshOf (*shapes::field (box, sharp), resolution (50));
+  EXPECT_MESH_CONTRACT (rounded, true);
+  EXPECT_MESH_CONTRACT (exact, true);
+  EXPECT_EQ (erkpa::measureTopology (exact).euler, 2);
+  EXPECT_NEAR (shapes::volume (exact), 2.8, 0.01);
+  const auto farthest_off = [&half] (const TriangleMesh &mesh) {
+    double distance = 0.0;
+    for (const Eigen::Vector3f &v : mesh.vertices)
+      distance = std::max (distance, std::abs ((v.cast<double> ().cwiseAbs () - half).maxCoeff ()));
+    return distance;
+  };
+  EXPECT_LT (farthest_off (exact), 2e-3); // every vertex lies on the true box
+  EXPECT_GT (farthest_off (rounded), 5.0 * farthest_off (exact));
+}
+
+TEST (Polygonizer, StaysClosedAtAnyResolution)
+{
+  const auto field = shapes::field (shapes::box (6000, { 1.0, 0.7, 0.5 }));
+  for (const int cells : { 7, 20, 64, 150 })
+  {
+    const TriangleMesh mesh = meshOf (*field, resolution (cells));
+    EXPECT_MESH_CONTRACT (mesh, true);
+    EXPECT_EQ (erkpa::measureTopology (mesh).euler, 2) << cells;
+  }
+}
+
+TEST (Polygonizer, PutsItsVerticesOnTheZeroSet)
+{
+  const auto field = shapes::field (shapes::torus (4000, 1.0, 0.4));
+  const double voxel = erkpa::chooseVoxelSize (*field, {});
+  const TriangleMesh mesh = meshOf (*field);
+  int off = 0;
+  for (const Eigen::Vector3f &v : mesh.vertices)
+    off += std::abs (field->value (v.cast<double> ())) > 1e-3 * voxel;
+  EXPECT_LT (off, 0.01 * static_cast<double> (mesh.vertices.size ())); // next to grid nodes a margin is kept
+}
+
+TEST (Polygonizer, IsoLevelOffsetsTheSurface)
+{
+  PolygonizerOptions options;
+  const auto field = shapes::field (shapes::sphere (4000));
+  for (const double iso : { -0.05, 0.05 })
+  {
+    options.iso_level = iso;
+    const TriangleMesh mesh = meshOf (*field, options);
+    EXPECT_MESH_CONTRACT (mesh, true);
+    for (const Eigen::Vector3f &v : mesh.vertices)
+      EXPECT_NEAR (v.norm (), 1.0 + iso, 0.003);
+  }
+}
+
+TEST (Polygonizer, EndsAnOpenSheetWhereItsPointsEnd)
+{
+  const auto wave = [] (double x, double y) { return 0.2 * std::sin (2.0 * x) * std::cos (y); };
+  const auto field = shapes::field (shapes::sheet (50, wave));
+  const TriangleMesh mesh = meshOf (*field);
+  EXPECT_MESH_CONTRACT (mesh, false);
+  const erkpa::MeshTopology topology = erkpa::measureTopology (mesh);
+  EXPECT_EQ (topology.components, 1u);
+  EXPECT_EQ (topology.euler, 1); // a disc: one border
+  const double spacing = 2.0 / 50;
+  double low = 0.0, high = 0.0;
+  for (const Eigen::Vector3f &v : mesh.vertices)
+  {
+    EXPECT_LT (v.head<2> ().cwiseAbs ().maxCoeff (), 1.0 + 1.5 * spacing);
+    EXPECT_NEAR (v.z (), wave (v.x (), v.y ()), 0.005);
+    low = std::min<double> (low, v.x ());
+    high = std::max<double> (high, v.x ());
+  }
+  EXPECT_LT (low, -1.0 + spacing);
+  EXPECT_GT (high, 1.0 - spacing);
+}
+
+TEST (Polygonizer, ClosesAGapThatTheFieldCloses)
+{
+  shapes::Samples gap;
+  const shapes::Samples sphere = shapes::sphere (6000);
+  for (std::size_t i = 0; i < sphere.size (); ++i)
+    if (sphere.positions[i].z () < 0.9965) // a hole of three spacings across at the pole
+      gap.add (sphere.positions[i], sphere.normals[i]);
+  const TriangleMesh mesh = meshOf (*shapes::field (gap));
+  EXPECT_MESH_CONTRACT (mesh, true);
+}
+
+TEST (Polygonizer, KeepsSeparateObjectsAndDropsStrayPoints)
+{
+  shapes::Samples scene = shapes::sphere (3000);
+  const shapes::Samples second = shapes::sphere (3000, 1.0, { 3.0, 0.0, 0.0 });
+  for (std::size_t i = 0; i < second.size (); ++i)
+    scene.add (second.positions[i], second.normals[i]);
+  scene.add ({ 0.0, 2.0, 0.0 }, Vector3d::UnitY ());
+  scene.add ({ 0.3, -1.7, 0.2 }, Vector3d::UnitX ());
+  scene.add ({ 1.5, 0.0, 0.8 }, Vector3d::UnitZ ());
+  const TriangleMesh mesh = meshOf (*shapes::field (scene));
+  EXPECT_MESH_CONTRACT (mesh, true);
+  EXPECT_EQ (erkpa::measureTopology (mesh).components, 2u);
+  EXPECT_NEAR (shapes::volume (mesh), 2.0 * 4.0 / 3.0 * M_PI, 0.1);
+}
+
+TEST (Polygonizer, GivesTheSameMeshInAnyNumberOfThreads)
+{
+  const auto field = shapes::field (shapes::torus (4000, 1.0, 0.4));
+  PolygonizerOptions options;
+  options.threads = 1;
+  const TriangleMesh one = meshOf (*field, options);
+  options.threads = 3;
+  const TriangleMesh three = meshOf (*field, options);
+  EXPECT_EQ (one.vertices, three.vertices);
+  EXPECT_EQ (one.normals, three.normals);
+  EXPECT_EQ (one.triangles, three.triangles);
+}
+
+TEST (Polygonizer, EvaluatesAboutAsOftenAsTheSurfaceIsLarge)
+{
+  const auto field = shapes::field (shapes::sphere (2000));
+  erkpa::PolygonizerReport coarse, fine;
+  meshOf (*field, resolution (30), &coarse);
+  meshOf (*field, resolution (120), &fine);
+  const double growth = static_cast<double> (fine.evaluations) / static_cast<double> (coarse.evaluations);
+  EXPECT_NEAR (growth, 16.0, 5.0); // as the area in voxels, not as the volume
+}
+
+TEST (Polygonizer, NamesTheSettingThatMakesNoSense)
+{
+  const auto field = shapes::field (shapes::sphere (500));
+  std::vector<std::pair<PolygonizerOptions, Status>> bad (6, { PolygonizerOptions (), Status::INVALID_SETTING });
+  bad[0].first.voxel_size = -1.0;
+  bad[1].first.resolution = -5;
+  bad[2].first.iso_level = std::nan ("");
+  bad[3].first.threads = -1;
+  bad[4] = { PolygonizerOptions (), Status::GRID_TOO_FINE };
+  bad[4].first.voxel_size = 1e-9;
+  bad[5] = { PolygonizerOptions (), Status::NO_SURFACE };
+  bad[5].first.iso_level = 40.0;
+  for (const auto &[options, status] : bad)
+  {
+    TriangleMesh mesh;
+    erkpa::PolygonizerReport report;
+    const erkpa::Outcome outcome = erkpa::polygonize (*field, options, mesh, report);
+    EXPECT_EQ (outcome.status, status);
+    EXPECT_FALSE (outcome.message.empty ());
+    EXPECT_TRUE (mesh.vertices.empty () && mesh.triangles.empty ());
+  }
+}
