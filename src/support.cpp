@@ -127,6 +127,12 @@ Support::quartileDistance () const
   return *quartile * radius_;
 }
 
+double
+Support::nearestDistance () const
+{
+  return squared_.empty () ? HUGE_VAL : std::sqrt (*std::min_element (squared_.begin (), squared_.end ()));
+}
+
 bool
 Support::select (const Eigen::Vector3d &x)
 {

@@ -67,6 +67,10 @@ public:
   double
   quartileDistance () const;
 
+  /** \brief Distance from x to the nearest node. */
+  double
+  nearestDistance () const;
+
   /** \brief Fewest nodes that define a field. */
   static constexpr std::size_t MIN_NODES = 4;
 

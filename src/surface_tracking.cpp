@@ -3,6 +3,7 @@
 
 #include "threads.h"
 
+#include <algorithm>
 #include <cmath>
 #include <string>
 #include <utility>
@@ -20,15 +21,18 @@ constexpr GridPoint AGAINST[3] = { { -1, 0, 0 }, { 0, -1, 0 }, { 0, 0, -1 } };
 } // namespace
 
 bool
-isInReach (const LocalField &local, const PolygonizerOptions &options)
+isInReach (const LocalField &local, const PolygonizerOptions &options, double voxel_size)
 {
-  return local.support ().quartileDistance () <=
-         options.reach * local.support ().radius () + std::abs (options.iso_level);
+  const Support &support = local.support ();
+  const double offset = std::abs (options.iso_level);
+  // A cell as large as the support or larger reaches beyond it, even where nodes lie in the cell.
+  return support.quartileDistance () <= options.reach * support.radius () + offset ||
+         support.nearestDistance () <= std::sqrt (3.0) * voxel_size + offset;
 }
 
 SurfaceTracker::SurfaceTracker (const ImplicitField &field, const PolygonizerOptions &options, SparseGrid &grid,
-                                PolygonizerReport &report, const ProgressCallback &progress)
-: field_ (field), options_ (options), grid_ (grid), report_ (report), progress_ (progress)
+                                PolygonizerReport &report, ProgressCallback progress)
+: field_ (field), options_ (options), grid_ (grid), report_ (report), progress_ (std::move (progress))
 {
 }
 
@@ -95,13 +99,21 @@ SurfaceTracker::requestCorners (const GridPoint &cell)
 void
 SurfaceTracker::evaluateRequested ()
 {
-  parallelFor (
-      requested_blocks_.size (), options_.threads, [this] { return LocalField (field_); },
-      [this] (LocalField &local, std::size_t i) { evaluateBlock (local, grid_.block (requested_blocks_[i])); },
-      [this] (const LocalField &local) {
-        report_.evaluations += local.evaluations ();
-        report_.support_nodes += local.supportNodes ();
-      });
+  // In slices, so that progress shows during the first front, which is the largest by far.
+  constexpr std::size_t SLICE = 8192;
+  for (std::size_t first = 0; first < requested_blocks_.size (); first += SLICE)
+  {
+    parallelFor (
+        std::min (SLICE, requested_blocks_.size () - first), options_.threads, [this] { return LocalField (field_); },
+        [&] (LocalField &local, std::size_t i) { evaluateBlock (local, grid_.block (requested_blocks_[first + i])); },
+        [this] (const LocalField &local) {
+          report_.evaluations += local.evaluations ();
+          report_.support_nodes += local.supportNodes ();
+        });
+    evaluated_blocks_ += std::min (SLICE, requested_blocks_.size () - first);
+    if (progress_)
+      progress_ (std::min (1.0, static_cast<double> (evaluated_blocks_) / static_cast<double> (grid_.blockCount ())));
+  }
   requested_blocks_.clear ();
 }
 
@@ -121,7 +133,7 @@ SurfaceTracker::evaluateBlock (LocalField &local, GridBlock &block) const
         continue;
       block.values[static_cast<std::size_t> (node)] =
           local.value (grid_.position (SparseGrid::pointAt (block, node))) - options_.iso_level;
-      if (isInReach (local, options_))
+      if (isInReach (local, options_, grid_.voxelSize ()))
         block.near |= std::uint64_t (1) << node;
     }
   }
@@ -221,7 +233,7 @@ SurfaceTracker::project (LocalField &local, Eigen::Vector3d &position) const
     local.gather (position, 0.0);
     const LocalSample sample = local.sample (position);
     const double slope = sample.gradient.squaredNorm ();
-    if (!sample.isDefined () || !(slope > 0.0) || !isInReach (local, options_))
+    if (!sample.isDefined () || !(slope > 0.0) || !isInReach (local, options_, grid_.voxelSize ()))
       return false;
     const Eigen::Vector3d move = (options_.iso_level - sample.value) / slope * sample.gradient;
     if (!(move.norm () < sample.radius + std::abs (options_.iso_level)))

@@ -21,7 +21,7 @@ class SurfaceTracker
 {
 public:
   SurfaceTracker (const ImplicitField &field, const PolygonizerOptions &options, SparseGrid &grid,
-                  PolygonizerReport &report, const ProgressCallback &progress);
+                  PolygonizerReport &report, ProgressCallback progress);
 
   /** \brief Mark the active cells of the grid.
     * \return Status::GRID_TOO_FINE where the surface passes more cells than fit in memory
@@ -80,15 +80,16 @@ private:
   const PolygonizerOptions &options_;
   SparseGrid &grid_;
   PolygonizerReport &report_;
-  const ProgressCallback &progress_;
+  ProgressCallback progress_;
   std::vector<GridPoint> front_, next_front_, active_;
   std::vector<int> requested_blocks_;
+  std::size_t evaluated_blocks_ = 0; // a block counts once per front that asks for nodes of it
   std::vector<GridPoint> cells_of_nodes_;
   bool too_many_ = false;
 };
 
 /** \brief Whether a surface may be at a point: not farther from the nodes than the data supports. */
 bool
-isInReach (const LocalField &local, const PolygonizerOptions &options);
+isInReach (const LocalField &local, const PolygonizerOptions &options, double voxel_size);
 
 } // namespace erkpa

@@ -74,7 +74,7 @@ storeVertex (const LocalField &local, const LocalSample &sample, const Eigen::Ve
 
 void
 placeVertices (const ImplicitField &field, const PolygonizerOptions &options, SparseGrid &grid,
-               SurfaceVertices &vertices, PolygonizerReport &report)
+               SurfaceVertices &vertices, PolygonizerReport &report, const ProgressCallback &progress)
 {
   const int channels = field.points ().channels;
   vertices.resize (static_cast<std::size_t> (grid.numberVertices ()), channels);
@@ -103,12 +103,20 @@ placeVertices (const ImplicitField &field, const PolygonizerOptions &options, Sp
             place_on_edge (local, block, node, axis);
     }
   };
-  parallelFor (
-      static_cast<std::size_t> (grid.blockCount ()), options.threads, [&] { return LocalField (field); },
-      place_in_block, [&report] (const LocalField &local) {
-        report.evaluations += local.evaluations ();
-        report.support_nodes += local.supportNodes ();
-      });
+  const auto blocks = static_cast<std::size_t> (grid.blockCount ());
+  constexpr std::size_t SLICE = 8192;
+  for (std::size_t first = 0; first < blocks; first += SLICE)
+  {
+    parallelFor (
+        std::min (SLICE, blocks - first), options.threads, [&] { return LocalField (field); },
+        [&] (LocalField &local, std::size_t i) { place_in_block (local, first + i); },
+        [&report] (const LocalField &local) {
+          report.evaluations += local.evaluations ();
+          report.support_nodes += local.supportNodes ();
+        });
+    if (progress)
+      progress (static_cast<double> (std::min (blocks, first + SLICE)) / static_cast<double> (blocks));
+  }
 }
 
 void

@@ -36,7 +36,7 @@ struct SurfaceVertices
   */
 void
 placeVertices (const ImplicitField &field, const PolygonizerOptions &options, SparseGrid &grid,
-               SurfaceVertices &vertices, PolygonizerReport &report);
+               SurfaceVertices &vertices, PolygonizerReport &report, const ProgressCallback &progress);
 
 /** \brief Project vertices \a first .. end to f = iso, each within \a limit of where it is, and fill in the rest. */
 void

@@ -144,7 +144,9 @@ TEST (Erkpa, CarriesColourFromThePointsToTheMesh)
   {
     EXPECT_EQ (v.g, 50);
     if (std::abs (v.z) > 0.2f)
+    {
       EXPECT_EQ (v.r, v.z > 0.0f ? 200 : 10);
+    }
   }
 }
 
@@ -265,9 +267,8 @@ TEST (Erkpa, SurvivesDegenerateCloudsWithAStatus)
       erkpa.setInputCloud (cloud);
       pcl::PolygonMesh mesh = usedMesh ();
       erkpa.reconstruct (mesh);
-      if (erkpa.getStatus () == Status::OK)
-        EXPECT_FALSE (mesh.polygons.empty ());
-      else
+      EXPECT_EQ (mesh.polygons.empty (), erkpa.getStatus () != Status::OK);
+      if (erkpa.getStatus () != Status::OK)
         expectEmpty (mesh);
     }
 }

@@ -141,6 +141,26 @@ TEST (Polygonizer, StaysClosedAtAnyResolution)
   }
 }
 
+TEST (Polygonizer, StaysClosedWhenVoxelsAreMuchLargerThanTheSpacingOfThePoints)
+{
+  const TriangleMesh mesh = meshOf (*shapes::field (shapes::sphere (100000)), resolution (12));
+  EXPECT_MESH_CONTRACT (mesh, true);
+  EXPECT_EQ (erkpa::measureTopology (mesh).euler, 2);
+}
+
+TEST (Polygonizer, TellsItsProgressFromZeroToOne)
+{
+  std::vector<double> told;
+  TriangleMesh mesh;
+  erkpa::PolygonizerReport report;
+  const auto field = shapes::field (shapes::sphere (2000));
+  ASSERT_TRUE (erkpa::polygonize (*field, {}, mesh, report, [&] (double done) { told.push_back (done); }).ok ());
+  ASSERT_FALSE (told.empty ());
+  for (const double done : told)
+    EXPECT_TRUE (done >= 0.0 && done <= 1.0);
+  EXPECT_EQ (told.back (), 1.0);
+}
+
 TEST (Polygonizer, PutsItsVerticesOnTheZeroSet)
 {
   const auto field = shapes::field (shapes::torus (4000, 1.0, 0.4));
