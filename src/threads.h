@@ -36,8 +36,9 @@ parallelFor (std::size_t count, int threads, MakeWorkerT make_worker, WorkT work
   for (int t = 0; t < thread_count; ++t)
     workers.push_back (make_worker ());
 
+  const std::size_t chunk = std::clamp<std::size_t> (count / (4 * static_cast<std::size_t> (std::max (1, thread_count))), 1, 8);
   std::exception_ptr failure;
-#pragma omp parallel for schedule(dynamic, 8) num_threads (thread_count)
+#pragma omp parallel for schedule(dynamic, chunk) num_threads (thread_count)
   for (std::size_t i = 0; i < count; ++i)
   {
     try
