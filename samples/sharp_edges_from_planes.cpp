@@ -68,8 +68,7 @@ main (int argc, char **argv)
       for (const pcl::PointNormal &point : *cloud)
       {
         const Eigen::Vector4f p = point.getVector3fMap ().homogeneous ();
-        points_on_both +=
-            std::max (std::abs (planes[i].dot (p)), std::abs (planes[j].dot (p))) < 2.0 * threshold;
+        points_on_both += std::max (std::abs (planes[i].dot (p)), std::abs (planes[j].dot (p))) < 2.0 * threshold;
       }
       if (points_on_both < 20) // they do not meet here
         continue;

@@ -36,7 +36,7 @@ findBeyondBorder (double limit, const std::vector<Triangle> &triangles, const st
         regions.unite (t[static_cast<std::size_t> (i)], t[static_cast<std::size_t> ((i + 1) % 3)]);
   std::vector<char> is_open (offsets.size (), 0);
   for (const MeshEdge &edge : boundaryEdges (triangles))
-    for (const int v : { edge.low, edge.high })
+    for (const int v : {edge.low, edge.high})
       if (is_beyond (v))
         is_open[static_cast<std::size_t> (regions.find (v))] = 1;
   for (std::size_t v = 0; v < offsets.size (); ++v)
@@ -49,7 +49,7 @@ class Clipper
 {
 public:
   Clipper (double limit, const std::vector<char> &beyond, SurfaceVertices &vertices)
-  : limit_ (limit), beyond_ (beyond), vertices_ (vertices)
+      : limit_ (limit), beyond_ (beyond), vertices_ (vertices)
   {
   }
 
@@ -67,13 +67,13 @@ public:
         polygon[size++] = isBeyond (here) ? vertexBetween (next, here) : vertexBetween (here, next);
     }
     if (size == 3)
-      kept.push_back ({ polygon[0], polygon[1], polygon[2] });
+      kept.push_back ({polygon[0], polygon[1], polygon[2]});
     if (size != 4)
       return;
     if (length (polygon[0], polygon[2]) <= length (polygon[1], polygon[3]))
-      kept.insert (kept.end (), { { polygon[0], polygon[1], polygon[2] }, { polygon[0], polygon[2], polygon[3] } });
+      kept.insert (kept.end (), {{polygon[0], polygon[1], polygon[2]}, {polygon[0], polygon[2], polygon[3]}});
     else
-      kept.insert (kept.end (), { { polygon[1], polygon[2], polygon[3] }, { polygon[1], polygon[3], polygon[0] } });
+      kept.insert (kept.end (), {{polygon[1], polygon[2], polygon[3]}, {polygon[1], polygon[3], polygon[0]}});
   }
 
 private:

@@ -10,14 +10,14 @@ namespace erkpa
 {
 
 /** \brief Cut a surface off where the data ends.
-  *
-  * Past the border of the data the field goes on for a while, up to the ragged edge of the evaluated grid. A region
-  * of vertices with too large a border offset is cut away if it runs out to that edge, along the line where the
-  * offset has the limit. A region that does not is a hole in the data which the surface closes: it stays.
-  * \param[in] limit the border offset at which a surface ends
-  * \param[in,out] triangles the triangles; clipped ones are replaced
-  * \param[in,out] vertices new vertices on the cut are appended, only their positions filled in
-  */
+ *
+ * Past the border of the data the field goes on for a while, up to the ragged edge of the evaluated grid. A region
+ * of vertices with too large a border offset is cut away if it runs out to that edge, along the line where the
+ * offset has the limit. A region that does not is a hole in the data which the surface closes: it stays.
+ * \param[in] limit the border offset at which a surface ends
+ * \param[in,out] triangles the triangles; clipped ones are replaced
+ * \param[in,out] vertices new vertices on the cut are appended, only their positions filled in
+ */
 void
 trimBorder (double limit, std::vector<std::array<int, 3>> &triangles, SurfaceVertices &vertices);
 

@@ -30,7 +30,7 @@ struct CellTables
       for (int i = 0; i < 4; ++i)
       {
         const int b = 1 << ((axis + 1) % 3), c = 1 << ((axis + 2) % 3);
-        edges[Index (4 * axis + i)] = { (i & 1 ? b : 0) | (i & 2 ? c : 0), axis };
+        edges[Index (4 * axis + i)] = {(i & 1 ? b : 0) | (i & 2 ? c : 0), axis};
       }
     for (int axis = 0; axis < 3; ++axis)
       for (int high = 0; high < 2; ++high)
@@ -47,7 +47,7 @@ private:
   {
     const int a = high ? 1 << axis : 0;
     const int b = 1 << ((axis + 1) % 3), c = 1 << ((axis + 2) % 3);
-    Face face{ { a, high ? a | b : a | c, a | b | c, high ? a | c : a | b }, {} };
+    Face face{{a, high ? a | b : a | c, a | b | c, high ? a | c : a | b}, {}};
     for (Index i = 0; i < 4; ++i)
       face.edges[i] = edgeBetween (face.corners[i], face.corners[(i + 1) % 4]);
     return face;

@@ -31,12 +31,12 @@ struct CellLoops
 };
 
 /** \brief Trace the loops through the faces of a cell.
-  *
-  * On a face with two opposite corners inside, the saddle of the bilinear interpolant decides which corners are
-  * joined. It depends on the face's four values only, so that the two cells of a face agree and the surface has no
-  * cracks.
-  * \param[in] values f - iso at the corners, none NaN; negative is inside
-  */
+ *
+ * On a face with two opposite corners inside, the saddle of the bilinear interpolant decides which corners are
+ * joined. It depends on the face's four values only, so that the two cells of a face agree and the surface has no
+ * cracks.
+ * \param[in] values f - iso at the corners, none NaN; negative is inside
+ */
 CellLoops
 traceLoops (const std::array<double, 8> &values);
 

@@ -51,15 +51,15 @@ findPencils (const std::vector<SharpSurface::ConstPtr> &surfaces, double toleran
     for (int b = a + 1; b < n; ++b)
       for (int c = b + 1; c < n; ++c)
       {
-        Pencil pencil{ { a, b, c }, 0.0, 0.0 };
-        if (plane (a) && plane (b) && plane (c) && pencilOf ({ plane (a), plane (b), plane (c) }, tolerance, pencil))
+        Pencil pencil{{a, b, c}, 0.0, 0.0};
+        if (plane (a) && plane (b) && plane (c) && pencilOf ({plane (a), plane (b), plane (c)}, tolerance, pencil))
           pencils.push_back (pencil);
       }
   return pencils;
 }
 
 Enrichment::Enrichment (const ImplicitField &field)
-: field_ (field), pencils_ (findPencils (field.options ().sharp_surfaces, field.spacing ()))
+    : field_ (field), pencils_ (findPencils (field.options ().sharp_surfaces, field.spacing ()))
 {
 }
 
@@ -81,7 +81,7 @@ Enrichment::gather (const Support &support)
     {
       const Eigen::Vector3d p = points.positions[static_cast<std::size_t> (node)].cast<double> () + points.origin;
       const double theta = surfaces[s]->theta (p);
-      near.at_nodes.push_back ({ theta, Eigen::Vector3d::Zero () });
+      near.at_nodes.push_back ({theta, Eigen::Vector3d::Zero ()});
       below = below || theta < 0.0;
       above = above || theta > 0.0;
     }
@@ -90,8 +90,7 @@ Enrichment::gather (const Support &support)
     for (std::size_t i = 0; i < near.at_nodes.size (); ++i)
     {
       const auto node = static_cast<std::size_t> (support.candidates ()[i]);
-      near.at_nodes[i].gradient =
-          surfaces[s]->thetaGradient (points.positions[node].cast<double> () + points.origin);
+      near.at_nodes[i].gradient = surfaces[s]->thetaGradient (points.positions[node].cast<double> () + points.origin);
     }
     ++near_count_;
   }
@@ -127,8 +126,8 @@ Enrichment::select (const Support &support, const Eigen::Vector3d &x)
     if (!near.active)
       continue;
     const SharpSurface &surface = *field_.options ().sharp_surfaces[static_cast<std::size_t> (near.surface)];
-    near.at_point = { surface.theta (position), surface.thetaGradient (position) };
-    terms_.push_back ({ static_cast<int> (i), -1, 1.0, 1.0 });
+    near.at_point = {surface.theta (position), surface.thetaGradient (position)};
+    terms_.push_back ({static_cast<int> (i), -1, 1.0, 1.0});
   }
   if (terms_.size () < 3)
     return;
@@ -136,7 +135,7 @@ Enrichment::select (const Support &support, const Eigen::Vector3d &x)
   {
     const int a = activeIndex (pencil.surfaces[0]), b = activeIndex (pencil.surfaces[1]);
     if (a >= 0 && b >= 0 && activeIndex (pencil.surfaces[2]) >= 0 && size () < MAX_TERMS)
-      terms_.push_back ({ a, b, pencil.scale_a, pencil.scale_b });
+      terms_.push_back ({a, b, pencil.scale_a, pencil.scale_b});
   }
 }
 

@@ -10,10 +10,10 @@ namespace erkpa
 {
 
 /** \brief Three sharp surfaces through one line, as three faces that meet in a corner give.
-  *
-  * With a = scale_a θ_a and b = scale_b θ_b the third is a - b up to its own scale. Max, min and saddle of the three
-  * faces differ from combinations of the θ⁺ by one function only: min (a⁺, b⁺).
-  */
+ *
+ * With a = scale_a θ_a and b = scale_b θ_b the third is a - b up to its own scale. Max, min and saddle of the three
+ * faces differ from combinations of the θ⁺ by one function only: min (a⁺, b⁺).
+ */
 struct Pencil
 {
   std::array<int, 3> surfaces;
@@ -25,9 +25,9 @@ std::vector<Pencil>
 findPencils (const std::vector<SharpSurface::ConstPtr> &surfaces, double tolerance);
 
 /** \brief The terms that sharp surfaces add to the reproduction vector: θH(θ) (eq. 22) and the corner terms.
-  *
-  * A surface is active at x where the support holds nodes on either side of it (paper, section 3.3).
-  */
+ *
+ * A surface is active at x where the support holds nodes on either side of it (paper, section 3.3).
+ */
 class Enrichment
 {
 public:
@@ -85,8 +85,7 @@ private:
   activeIndex (int surface) const;
 
   static void
-  evaluate (const Term &term, const Theta &a, const Theta *b, double radius, double &value,
-            Eigen::Vector3d &gradient);
+  evaluate (const Term &term, const Theta &a, const Theta *b, double radius, double &value, Eigen::Vector3d &gradient);
 
   const ImplicitField &field_;
   std::vector<Pencil> pencils_;

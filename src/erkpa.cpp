@@ -47,7 +47,7 @@ reconstructAs (const pcl::PCLPointCloud2 &input, const Options &options, pcl::Po
   report = erkpa.getReport ();
   if (field != nullptr)
     *field = erkpa.getField ();
-  return { erkpa.getStatus (), erkpa.getStatusMessage () };
+  return {erkpa.getStatus (), erkpa.getStatusMessage ()};
 }
 
 bool

@@ -14,13 +14,13 @@ namespace erkpa
 {
 
 /** \brief The fit of the nodes in one support, and what it says at the support's centre x: f, ∇f, φ_i and ψ_i.
-  *
-  * Works in coordinates u = (y - x) / ε, where a node has the value λ_i = 0 and the gradient n_i. The constant basis
-  * has no gradient to fit: there the value of a node is Shen's functional constraint λ_i(x) = (x - x_i)·n_i (eq. 2).
-  *
-  * \tparam BasisT polynomial part of the reproduction vector
-  * \tparam Size number of terms with the enrichment, or Eigen::Dynamic
-  */
+ *
+ * Works in coordinates u = (y - x) / ε, where a node has the value λ_i = 0 and the gradient n_i. The constant basis
+ * has no gradient to fit: there the value of a node is Shen's functional constraint λ_i(x) = (x - x_i)·n_i (eq. 2).
+ *
+ * \tparam BasisT polynomial part of the reproduction vector
+ * \tparam Size number of terms with the enrichment, or Eigen::Dynamic
+ */
 template <typename BasisT, int Size, int MaxSize>
 class HermiteFit
 {
@@ -30,8 +30,8 @@ public:
   using Gradients = typename System::Gradients;
 
   HermiteFit (const OrientedPoints &points, const Support &support, const Enrichment &enrichment)
-  : points_ (points), support_ (support), enrichment_ (enrichment), system_ (BasisT::SIZE + enrichment.size ()),
-    R_ (system_.size ()), G_ (system_.size (), 3)
+      : points_ (points), support_ (support), enrichment_ (enrichment), system_ (BasisT::SIZE + enrichment.size ()),
+        R_ (system_.size ()), G_ (system_.size (), 3)
   {
     for (const SupportNode &node : support_.nodes ())
     {
@@ -65,9 +65,9 @@ public:
       evaluateTerms (node);
       const Eigen::Vector3d normal = normalOf (node);
       const double of_values = shape_.dot (R_) * (lambda (node) - c.dot (R_));
-      const double of_gradients =
-          (G_.transpose () * shape_).dot (usesFunctionalValues () ? Eigen::Vector3d (Eigen::Vector3d::Zero ())
-                                                                   : Eigen::Vector3d (normal - G_.transpose () * c));
+      const double of_gradients = (G_.transpose () * shape_)
+                                      .dot (usesFunctionalValues () ? Eigen::Vector3d (Eigen::Vector3d::Zero ())
+                                                                    : Eigen::Vector3d (normal - G_.transpose () * c));
       result += weightGradient (node) * (of_values + of_gradients) + growth * (node.weight * of_gradients);
       if (usesFunctionalValues ())
         result += node.weight * shape_.dot (R_) * normal; // ∇λ_i(x) = n_i
@@ -150,7 +150,7 @@ private:
   Vector
   thresholds () const
   {
-    constexpr double OF_DEGREE[] = { 0.0, 1e-10, 1e-4 };
+    constexpr double OF_DEGREE[] = {0.0, 1e-10, 1e-4};
     constexpr double OF_ENRICHMENT = 2e-4;
     Vector thresholds (system_.size ());
     for (int j = 0; j < system_.size (); ++j)
@@ -167,10 +167,10 @@ private:
   }
 
   /** \brief Σ_j a_j c_j ∇ρ_j over the raised pivots.
-    *
-    * ρ_j depends on x through its pivot and the total weight. pivot_j = v^T M v with v the residual of term j, so
-    * ∇pivot_j = v^T ∇M v + Σ_(k<j) v_k² ∇ρ_k. All is taken in the frame of x; a term of degree p scales with ε^p.
-    */
+   *
+   * ρ_j depends on x through its pivot and the total weight. pivot_j = v^T M v with v the residual of term j, so
+   * ∇pivot_j = v^T ∇M v + Σ_(k<j) v_k² ∇ρ_k. All is taken in the frame of x; a term of degree p scales with ε^p.
+   */
   Eigen::Vector3d
   gradientOfRaises (const Vector &c)
   {
@@ -209,9 +209,9 @@ private:
   const Support &support_;
   const Enrichment &enrichment_;
   System system_;
-  Vector R_;      // terms at the node or point last visited
-  Gradients G_;   // their gradients
-  Vector shape_;  // M^-1 R(x)
+  Vector R_;     // terms at the node or point last visited
+  Gradients G_;  // their gradients
+  Vector shape_; // M^-1 R(x)
 };
 
 } // namespace erkpa

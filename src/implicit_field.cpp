@@ -15,7 +15,7 @@ namespace erkpa
 
 ImplicitField::ImplicitField (std::shared_ptr<const OrientedPoints> points, NeighborSearch::ConstPtr search,
                               const FieldOptions &options)
-: points_ (std::move (points)), search_ (std::move (search)), options_ (options)
+    : points_ (std::move (points)), search_ (std::move (search)), options_ (options)
 {
   const int k = chooseSupportSize (*points_, *search_);
   spacing_ = measureSpacing (*points_, *search_);
@@ -36,10 +36,10 @@ Outcome
 ImplicitField::checkOptions (const FieldOptions &options)
 {
   if (options.k != 0 && options.k < 4)
-    return { Status::INVALID_SETTING, "k = " + std::to_string (options.k) +
-                                          " neighbours do not determine a surface: use at least 4, or 0 for automatic" };
+    return {Status::INVALID_SETTING, "k = " + std::to_string (options.k) +
+                                         " neighbours do not determine a surface: use at least 4, or 0 for automatic"};
   if (!(options.radius >= 0.0) || !std::isfinite (options.radius))
-    return { Status::INVALID_SETTING, "the support radius must be positive and finite, or 0 to use k neighbours" };
+    return {Status::INVALID_SETTING, "the support radius must be positive and finite, or 0 to use k neighbours"};
   return {};
 }
 
@@ -82,7 +82,7 @@ ImplicitField::evaluate (const std::vector<Eigen::Vector3d> &points, std::vector
   for (std::size_t i = 0; i < points.size (); ++i)
   {
     const Eigen::Vector3d cell = ((points[i] - points_->origin) / side).array ().floor ();
-    order[i] = { { cell[0], cell[1], cell[2] }, i };
+    order[i] = {{cell[0], cell[1], cell[2]}, i};
   }
   order.erase (std::remove_if (order.begin (), order.end (),
                                [&] (const auto &entry) { return !points[entry.second].allFinite (); }),
@@ -95,13 +95,15 @@ ImplicitField::evaluate (const std::vector<Eigen::Vector3d> &points, std::vector
   starts.push_back (order.size ());
 
   const auto make_worker = [this] { return LocalField (*this); };
-  parallelFor (starts.size () - 1, threads, make_worker, [&] (LocalField &local, std::size_t group) {
-    const Cell &cell = order[starts[group]].first;
-    const Eigen::Vector3d center = (Eigen::Vector3d (cell[0], cell[1], cell[2]).array () + 0.5) * side;
-    local.gather (center, 0.5 * std::sqrt (3.0) * side);
-    for (std::size_t i = starts[group]; i < starts[group + 1]; ++i)
-      samples[order[i].second] = local.sample (points[order[i].second] - points_->origin);
-  });
+  parallelFor (starts.size () - 1, threads, make_worker,
+               [&] (LocalField &local, std::size_t group)
+               {
+                 const Cell &cell = order[starts[group]].first;
+                 const Eigen::Vector3d center = (Eigen::Vector3d (cell[0], cell[1], cell[2]).array () + 0.5) * side;
+                 local.gather (center, 0.5 * std::sqrt (3.0) * side);
+                 for (std::size_t i = starts[group]; i < starts[group + 1]; ++i)
+                   samples[order[i].second] = local.sample (points[order[i].second] - points_->origin);
+               });
 }
 
 } // namespace erkpa

@@ -14,14 +14,14 @@ namespace erkpa
 /** \brief A sample of the field with what the polygonizer wants to know beside it. */
 struct LocalSample : FieldSample
 {
-  double radius = 0.0;           ///< support radius ε(x)
-  double border_offset = 0.0;    ///< |centroid of the weighted nodes - x| along the surface, in ε
+  double radius = 0.0;        ///< support radius ε(x)
+  double border_offset = 0.0; ///< |centroid of the weighted nodes - x| along the surface, in ε
 };
 
 /** \brief The field seen from one ball: gathers the nodes once, then evaluates f at any of the ball's points.
-  *
-  * Works in the local frame of OrientedPoints. One object per thread; its memory is reused from ball to ball.
-  */
+ *
+ * Works in the local frame of OrientedPoints. One object per thread; its memory is reused from ball to ball.
+ */
 class LocalField
 {
 public:

@@ -21,7 +21,7 @@ public:
 
   LoopTriangulator (const std::vector<Eigen::Vector3d> &positions, const std::vector<Eigen::Vector3d> &normals,
                     const std::array<int, 12> &edges)
-  : positions_ (positions), normals_ (normals), edges_ (edges), size_ (static_cast<int> (positions.size ()))
+      : positions_ (positions), normals_ (normals), edges_ (edges), size_ (static_cast<int> (positions.size ()))
   {
     for (int i = 1; i < size_; ++i)
       scale_ += (at (i) - at (0)).squaredNorm ();
@@ -36,7 +36,7 @@ public:
     if (j - i < 2)
       return;
     const int apex = entry (i, j).apex;
-    triangles.push_back ({ i, apex, j });
+    triangles.push_back ({i, apex, j});
     collect (i, apex, triangles);
     collect (apex, j, triangles);
   }
@@ -74,7 +74,7 @@ private:
     {
       const double cost = entry (i, apex).cost + entry (apex, j).cost + costOfTriangle (i, apex, j);
       if (best.apex == 0 || cost < best.cost)
-        best = { cost, apex };
+        best = {cost, apex};
     }
     const bool is_chord = j - i < size_ - 1;
     if (is_chord)
@@ -115,7 +115,7 @@ triangulateLoop (const std::vector<Eigen::Vector3d> &positions, const std::vecto
 {
   if (positions.size () == 3)
   {
-    triangles.push_back ({ 0, 1, 2 });
+    triangles.push_back ({0, 1, 2});
     return true;
   }
   const LoopTriangulator triangulator (positions, normals, edges);

@@ -38,7 +38,7 @@ extentOf (const OrientedPoints &points)
 Outcome
 checkOptions (const PolygonizerOptions &options)
 {
-  const auto bad = [] (const std::string &why) { return Outcome{ Status::INVALID_SETTING, why }; };
+  const auto bad = [] (const std::string &why) { return Outcome{Status::INVALID_SETTING, why}; };
   if (!(options.voxel_size >= 0.0) || !std::isfinite (options.voxel_size))
     return bad ("the voxel size must be positive and finite, or 0 for automatic");
   if (options.resolution < 0)
@@ -107,7 +107,7 @@ public:
         continue;
       }
       for (const Triangle &t : corners_)
-        output.triangles.push_back ({ at (t[0]), at (t[1]), at (t[2]) });
+        output.triangles.push_back ({at (t[0]), at (t[1]), at (t[2])});
     }
   }
 
@@ -135,7 +135,7 @@ addFan (const std::vector<int> &ring, std::vector<Triangle> &triangles, SurfaceV
   const int center = static_cast<int> (vertices.positions.size ());
   vertices.positions.push_back (middle);
   for (std::size_t i = 0; i < ring.size (); ++i)
-    triangles.push_back ({ ring[i], ring[(i + 1) % ring.size ()], center });
+    triangles.push_back ({ring[i], ring[(i + 1) % ring.size ()], center});
 }
 
 /** \brief All cells' triangles, in the order of the cells. */
@@ -146,7 +146,8 @@ meshCells (const SparseGrid &grid, const std::vector<GridPoint> &cells, int thre
   std::vector<CellOutput> outputs ((cells.size () + STRETCH - 1) / STRETCH);
   parallelFor (
       outputs.size (), threads, [&] { return CellMesher (grid, vertices); },
-      [&] (CellMesher &mesher, std::size_t i) {
+      [&] (CellMesher &mesher, std::size_t i)
+      {
         for (std::size_t c = i * STRETCH; c < std::min (cells.size (), (i + 1) * STRETCH); ++c)
           mesher.mesh (cells[c], outputs[i]);
       });
@@ -186,14 +187,13 @@ dropUnsupported (const SparseGrid &grid, const std::vector<GridPoint> &cells_of_
   }
   std::size_t dropped = 0;
   for (int v = 0; v < static_cast<int> (vertex_count); ++v)
-    dropped += used[static_cast<std::size_t> (v)] && pieces.find (v) == v &&
-                       support[static_cast<std::size_t> (v)] < min_points
-                   ? 1
-                   : 0;
+    dropped +=
+        used[static_cast<std::size_t> (v)] && pieces.find (v) == v && support[static_cast<std::size_t> (v)] < min_points
+            ? 1
+            : 0;
   triangles.erase (std::remove_if (triangles.begin (), triangles.end (),
-                                   [&] (const Triangle &t) {
-                                     return support[static_cast<std::size_t> (pieces.find (t[0]))] < min_points;
-                                   }),
+                                   [&] (const Triangle &t)
+                                   { return support[static_cast<std::size_t> (pieces.find (t[0]))] < min_points; }),
                    triangles.end ());
   return dropped;
 }
@@ -240,13 +240,14 @@ polygonize (const ImplicitField &field, const PolygonizerOptions &options, Trian
   const double voxel = report.voxel_size = chooseVoxelSize (field, options);
   const double cells = extentOf (field.points ()).maxCoeff () / voxel;
   if (!(cells < SparseGrid::LIMIT))
-    return { Status::GRID_TOO_FINE, "a voxel of " + std::to_string (voxel) +
-                                        " is too small for the extent of the cloud: use a larger voxel size" };
+    return {Status::GRID_TOO_FINE, "a voxel of " + std::to_string (voxel) +
+                                       " is too small for the extent of the cloud: use a larger voxel size"};
 
   // Off the middle of the cloud by odd shares of a cell: faces of boxes then do not fall on grid nodes.
   SparseGrid grid (-voxel * Eigen::Vector3d (0.371, 0.437, 0.293), voxel);
   // Following the surface and placing its vertices take about as long as each other.
-  const auto stage = [&progress] (double start) {
+  const auto stage = [&progress] (double start)
+  {
     return progress ? ProgressCallback ([&progress, start] (double done) { progress (start + 0.5 * done); })
                     : ProgressCallback ();
   };
@@ -267,8 +268,8 @@ polygonize (const ImplicitField &field, const PolygonizerOptions &options, Trian
   report.dropped_components = dropUnsupported (grid, tracker.cellsOfNodes (), options.min_component_points,
                                                vertices.positions.size (), triangles);
   if (triangles.empty ())
-    return { Status::NO_SURFACE, "no surface was found at the points: the support may hold too few of them (use a "
-                                 "larger k or radius), or the iso level may lie beyond them" };
+    return {Status::NO_SURFACE, "no surface was found at the points: the support may hold too few of them (use a "
+                                "larger k or radius), or the iso level may lie beyond them"};
   mesh = toInputFrame (field.points (), vertices, triangles);
   return {};
 }

@@ -10,20 +10,20 @@ namespace erkpa
 {
 
 /** \brief The moment matrix M(x) of eq. (17) in its gradient-reproducing (Hermite) form, and its solution.
-  *
-  * Around x the field is the combination c·R of the reproduction vector R (eq. 15) that minimises
-  *   Σ_i w_i [ (c·R(x_i) - λ_i)² + Σ_a (c·∂_aR(x_i) - n_i,a)² ],
-  * in coordinates centred on x and scaled by the support radius. Its normal equations are M c = b with
-  *   M = Σ_i w_i (R R^T + Σ_a ∂_aR ∂_aR^T),   b = Σ_i w_i (R λ_i + Σ_a ∂_aR n_i,a).
-  * The paper writes M with B(x, x_i) on the right, which is not symmetric but gives the same shape functions.
-  *
-  * A term that the nodes do not determine (an enrichment whose support holds nodes on one side only, a square on
-  * a flat patch) has a vanishing pivot. Each pivot that falls below a threshold is raised, the more the smaller it
-  * is: the term's coefficient then goes to zero continuously, and with it the term drops out without a jump in f.
-  *
-  * \tparam Size number of terms, or Eigen::Dynamic
-  * \tparam MaxSize upper bound of the number of terms
-  */
+ *
+ * Around x the field is the combination c·R of the reproduction vector R (eq. 15) that minimises
+ *   Σ_i w_i [ (c·R(x_i) - λ_i)² + Σ_a (c·∂_aR(x_i) - n_i,a)² ],
+ * in coordinates centred on x and scaled by the support radius. Its normal equations are M c = b with
+ *   M = Σ_i w_i (R R^T + Σ_a ∂_aR ∂_aR^T),   b = Σ_i w_i (R λ_i + Σ_a ∂_aR n_i,a).
+ * The paper writes M with B(x, x_i) on the right, which is not symmetric but gives the same shape functions.
+ *
+ * A term that the nodes do not determine (an enrichment whose support holds nodes on one side only, a square on
+ * a flat patch) has a vanishing pivot. Each pivot that falls below a threshold is raised, the more the smaller it
+ * is: the term's coefficient then goes to zero continuously, and with it the term drops out without a jump in f.
+ *
+ * \tparam Size number of terms, or Eigen::Dynamic
+ * \tparam MaxSize upper bound of the number of terms
+ */
 template <int Size, int MaxSize = Size>
 class MomentSystem
 {
@@ -33,7 +33,7 @@ public:
   using Matrix = Eigen::Matrix<double, Size, Size, 0, MaxSize, MaxSize>;
 
   explicit MomentSystem (int size)
-  : moments_ (Matrix::Zero (size, size)), rhs_ (Vector::Zero (size)), pivots_ (size), raise_ (size), slope_ (size)
+      : moments_ (Matrix::Zero (size, size)), rhs_ (Vector::Zero (size)), pivots_ (size), raise_ (size), slope_ (size)
   {
   }
 
@@ -59,9 +59,9 @@ public:
   }
 
   /** \brief M = L D L^T without pivoting, polynomials first, so that each pivot is what the nodes say about a term
-    * beyond the terms before it.
-    * \param[in] thresholds per term, the share of the total weight below which its pivot is raised
-    */
+   * beyond the terms before it.
+   * \param[in] thresholds per term, the share of the total weight below which its pivot is raised
+   */
   void
   factorize (const Vector &thresholds)
   {

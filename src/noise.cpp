@@ -71,10 +71,13 @@ measureSpacing (const OrientedPoints &points, const NeighborSearch &search)
 {
   constexpr int NEIGHBORS = 8;
   std::vector<double> spacings;
-  visitSample (points, search, 2000, NEIGHBORS + 1, [&] (const auto &neighbors) {
-    const double others = std::max (1.0, static_cast<double> (neighbors.size ()) - 1.0); // the first is the node
-    spacings.push_back (std::sqrt (M_PI * neighbors.back ().first / others));
-  });
+  visitSample (points, search, 2000, NEIGHBORS + 1,
+               [&] (const auto &neighbors)
+               {
+                 const double others =
+                     std::max (1.0, static_cast<double> (neighbors.size ()) - 1.0); // the first is the node
+                 spacings.push_back (std::sqrt (M_PI * neighbors.back ().first / others));
+               });
   return median (spacings);
 }
 
@@ -82,16 +85,18 @@ int
 chooseSupportSize (const OrientedPoints &points, const NeighborSearch &search)
 {
   constexpr double TILT = 0.01; // radians
-  constexpr std::array<int, 7> SIZES{ CLEAN_SUPPORT, 28, 40, 56, 80, 112, 160 };
+  constexpr std::array<int, 7> SIZES{CLEAN_SUPPORT, 28, 40, 56, 80, 112, 160};
   std::array<std::vector<double>, SIZES.size ()> tilts;
-  visitSample (points, search, 400, SIZES.back (), [&] (const auto &neighbors) {
-    const double noise = thicknessOf (points, neighbors, 10);
-    for (std::size_t i = 0; i < SIZES.size () && SIZES[i] <= static_cast<int> (neighbors.size ()); ++i)
-    {
-      const double radius = std::sqrt (neighbors[static_cast<std::size_t> (SIZES[i] - 1)].first);
-      tilts[i].push_back (noise / (radius * std::sqrt (SIZES[i])));
-    }
-  });
+  visitSample (points, search, 400, SIZES.back (),
+               [&] (const auto &neighbors)
+               {
+                 const double noise = thicknessOf (points, neighbors, 10);
+                 for (std::size_t i = 0; i < SIZES.size () && SIZES[i] <= static_cast<int> (neighbors.size ()); ++i)
+                 {
+                   const double radius = std::sqrt (neighbors[static_cast<std::size_t> (SIZES[i] - 1)].first);
+                   tilts[i].push_back (noise / (radius * std::sqrt (SIZES[i])));
+                 }
+               });
   for (std::size_t i = 0; i < SIZES.size (); ++i)
     if (tilts[i].empty () || median (tilts[i]) <= TILT)
       return SIZES[i];

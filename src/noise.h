@@ -15,11 +15,11 @@ double
 measureSpacing (const OrientedPoints &points, const NeighborSearch &search);
 
 /** \brief How many neighbours it takes to average the noise out.
-  *
-  * The noise is the thickness of small neighbourhoods: the standard deviation of the 10 nearest nodes along their
-  * thinnest direction. A fit to k nodes within r tilts by about noise / (r sqrt k). Takes the smallest k, from
-  * CLEAN_SUPPORT on, for which this is below 0.01 in the median.
-  */
+ *
+ * The noise is the thickness of small neighbourhoods: the standard deviation of the 10 nearest nodes along their
+ * thinnest direction. A fit to k nodes within r tilts by about noise / (r sqrt k). Takes the smallest k, from
+ * CLEAN_SUPPORT on, for which this is below 0.01 in the median.
+ */
 int
 chooseSupportSize (const OrientedPoints &points, const NeighborSearch &search);
 

@@ -16,8 +16,8 @@ namespace erkpa
 namespace
 {
 
-constexpr std::size_t LINKS = 10;   // a node is linked to so many of its neighbours, near and far
-constexpr double SEEN = 0.85;       // share of a piece that must agree for the view point to be believed
+constexpr std::size_t LINKS = 10; // a node is linked to so many of its neighbours, near and far
+constexpr double SEEN = 0.85;     // share of a piece that must agree for the view point to be believed
 
 /** \brief A pair of neighbours; unsureness is 0 for two points of one flat patch, and grows from there. */
 struct Link
@@ -27,7 +27,7 @@ struct Link
   bool flips;
 
   bool
-  operator< (const Link &other) const
+  operator<(const Link &other) const
   {
     return std::make_pair (unsureness, std::make_pair (from, to)) <
            std::make_pair (other.unsureness, std::make_pair (other.from, other.to));
@@ -61,7 +61,7 @@ public:
       rest ^= own;
       node = next;
     }
-    return { root, flipped };
+    return {root, flipped};
   }
 
   void
@@ -102,12 +102,12 @@ linkBetween (const OrientedPoints &points, const std::vector<Eigen::Vector3f> &n
   const float mirrored = normals[i].dot (normals[j]) - 2.0f * slope * other_slope;
   // A pair that stands along its normals is a thin wall or two layers of a noisy scan: to be asked last.
   const float steepness = std::max (slope * slope, other_slope * other_slope);
-  return { 1.0f - std::abs (mirrored) + steepness, from, to, mirrored < 0.0f };
+  return {1.0f - std::abs (mirrored) + steepness, from, to, mirrored < 0.0f};
 }
 
 std::vector<Link>
-linkNeighbors (const OrientedPoints &points, const NeighborSearch &search,
-               const std::vector<Eigen::Vector3f> &normals, int k, int threads)
+linkNeighbors (const OrientedPoints &points, const NeighborSearch &search, const std::vector<Eigen::Vector3f> &normals,
+               int k, int threads)
 {
   struct Scratch
   {
@@ -118,7 +118,8 @@ linkNeighbors (const OrientedPoints &points, const NeighborSearch &search,
   std::vector<std::vector<Link>> of_node (points.size ());
   parallelFor (
       points.size (), threads, [] { return Scratch (); },
-      [&] (Scratch &scratch, std::size_t i) {
+      [&] (Scratch &scratch, std::size_t i)
+      {
         search.nearestK (points.positions[i], k, scratch.indices, scratch.squared);
         scratch.order.clear ();
         for (std::size_t j = 0; j < scratch.indices.size (); ++j)
@@ -140,11 +141,11 @@ linkNeighbors (const OrientedPoints &points, const NeighborSearch &search,
 /** \brief What speaks for the sign of one piece; positive means that its signs are right as they are. */
 struct Votes
 {
-  double given = 0.0;                          ///< normals that came with the input
-  double seen = 0.0, unseen = 0.0;             ///< agreement with the view point
-  std::array<float, 26> farthest;              ///< per direction, how far out the outermost node lies
-  std::array<float, 26> outward{};             ///< and how its normal looks that way
-  double upward = 0.0;                         ///< for a sheet, which has no outside
+  double given = 0.0;              ///< normals that came with the input
+  double seen = 0.0, unseen = 0.0; ///< agreement with the view point
+  std::array<float, 26> farthest;  ///< per direction, how far out the outermost node lies
+  std::array<float, 26> outward{}; ///< and how its normal looks that way
+  double upward = 0.0;             ///< for a sheet, which has no outside
 
   Votes ()
   {

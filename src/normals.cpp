@@ -45,7 +45,7 @@ estimateNormals (OrientedPoints &points, const NeighborSearch &search, const Nor
                  Orientation &orientation)
 {
   if (options.k != 0 && options.k < 3)
-    return { Status::INVALID_SETTING, "normals need at least 3 neighbours, or 0 for automatic" };
+    return {Status::INVALID_SETTING, "normals need at least 3 neighbours, or 0 for automatic"};
   const int k = options.k > 0 ? options.k : chooseSupportSize (points, search);
   const Eigen::Vector3f view_point = (options.view_point - points.origin).cast<float> ();
   std::vector<Eigen::Vector3f> estimated = fitPlanes (points, k, view_point, options.threads);
@@ -54,7 +54,7 @@ estimateNormals (OrientedPoints &points, const NeighborSearch &search, const Nor
     if (!points.normals[i].isZero (0.0f))
       estimated[i] = points.normals[i];
     else if (!estimated[i].allFinite ())
-      return { Status::NO_NORMALS, "normals could not be estimated at some points: give normals with the input" };
+      return {Status::NO_NORMALS, "normals could not be estimated at some points: give normals with the input"};
   }
   orientation = orientNormals (points, search, k, options, estimated);
   points.normals.swap (estimated);

@@ -37,8 +37,8 @@ chosenPoints (const PointView &view, std::vector<int> &chosen)
   }
   for (const int index : *view.indices)
     if (index < 0 || static_cast<std::size_t> (index) >= view.size)
-      return { Status::BAD_INDICES, "index " + std::to_string (index) + " is outside the input cloud of " +
-                                        std::to_string (view.size) + " points: check setIndices ()" };
+      return {Status::BAD_INDICES, "index " + std::to_string (index) + " is outside the input cloud of " +
+                                       std::to_string (view.size) + " points: check setIndices ()"};
   chosen = *view.indices;
   return {};
 }
@@ -47,8 +47,8 @@ chosenPoints (const PointView &view, std::vector<int> &chosen)
 void
 dropUnusable (const PointView &view, std::vector<int> &chosen, PointCounts &counts)
 {
-  const auto finite_end = std::remove_if (chosen.begin (), chosen.end (),
-                                          [&] (int i) { return !isFinite (at (view, view.position, i)); });
+  const auto finite_end =
+      std::remove_if (chosen.begin (), chosen.end (), [&] (int i) { return !isFinite (at (view, view.position, i)); });
   counts.not_finite = static_cast<std::size_t> (chosen.end () - finite_end);
   chosen.erase (finite_end, chosen.end ());
 
@@ -61,7 +61,7 @@ dropUnusable (const PointView &view, std::vector<int> &chosen, PointCounts &coun
   for (std::size_t rank = 0; rank < chosen.size (); ++rank)
   {
     const float *p = at (view, view.position, chosen[rank]);
-    places[rank] = { p[0] + 0.0f, p[1] + 0.0f, p[2] + 0.0f, static_cast<int> (rank) }; // -0 becomes 0
+    places[rank] = {p[0] + 0.0f, p[1] + 0.0f, p[2] + 0.0f, static_cast<int> (rank)}; // -0 becomes 0
   }
   const auto before = [] (const Place &a, const Place &b) {
     return a.x != b.x ? a.x < b.x : a.y != b.y ? a.y < b.y : a.z != b.z ? a.z < b.z : a.rank < b.rank;

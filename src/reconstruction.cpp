@@ -43,9 +43,9 @@ collect (const PointView &view, const SearchFactory &make_search, OrientedPoints
   if (!outcome.ok ())
     return outcome;
   if (points.size () < Support::MIN_NODES)
-    return { Status::TOO_FEW_POINTS, "the input has " + std::to_string (points.size ()) + " distinct, finite points of " +
-                                         std::to_string (report.points.read) + " read: a surface needs at least " +
-                                         std::to_string (Support::MIN_NODES) };
+    return {Status::TOO_FEW_POINTS, "the input has " + std::to_string (points.size ()) +
+                                        " distinct, finite points of " + std::to_string (report.points.read) +
+                                        " read: a surface needs at least " + std::to_string (Support::MIN_NODES)};
   search = make_search ? make_search (points) : makeKdTreeSearch (points.positions);
   return {};
 }

@@ -10,9 +10,11 @@ namespace erkpa
 Outcome
 makeSharpPlane (const std::vector<float> &coefficients, SharpSurface::ConstPtr &surface)
 {
-  const auto bad = [] (const std::string &why) {
-    return Outcome { Status::INVALID_SETTING, "a sharp edge needs the four coefficients a, b, c, d of a plane "
-                                              "a x + b y + c z + d = 0, " + why };
+  const auto bad = [] (const std::string &why)
+  {
+    return Outcome{Status::INVALID_SETTING, "a sharp edge needs the four coefficients a, b, c, d of a plane "
+                                            "a x + b y + c z + d = 0, " +
+                                                why};
   };
   if (coefficients.size () != 4)
     return bad ("but " + std::to_string (coefficients.size ()) + " are given");

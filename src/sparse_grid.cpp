@@ -23,7 +23,7 @@ makeParts (int side)
     for (int y = 0; y < GridBlock::SIDE; y += side)
       for (int x = 0; x < GridBlock::SIDE; x += side)
       {
-        BlockPart part{ 0, { x, y, z }, side };
+        BlockPart part{0, {x, y, z}, side};
         for (int node = 0; node < GridBlock::NODES; ++node)
           if ((node & 3) / side == x / side && ((node >> 2) & 3) / side == y / side && (node >> 4) / side == z / side)
             part.nodes |= std::uint64_t (1) << node;
@@ -37,7 +37,7 @@ makeParts (int side)
 const std::vector<BlockPart> &
 partsOfBlock (double support)
 {
-  static const std::array<std::vector<BlockPart>, 3> PARTS{ makeParts (1), makeParts (2), makeParts (4) };
+  static const std::array<std::vector<BlockPart>, 3> PARTS{makeParts (1), makeParts (2), makeParts (4)};
   return PARTS[support > 2.5 ? 2 : support > 1.0 ? 1 : 0];
 }
 
@@ -45,8 +45,8 @@ GridPoint
 SparseGrid::cellOf (const Eigen::Vector3d &position) const
 {
   const Eigen::Vector3d p = (position - origin_) / voxel_size_;
-  return { static_cast<int> (std::floor (p[0])), static_cast<int> (std::floor (p[1])),
-           static_cast<int> (std::floor (p[2])) };
+  return {static_cast<int> (std::floor (p[0])), static_cast<int> (std::floor (p[1])),
+          static_cast<int> (std::floor (p[2]))};
 }
 
 std::uint64_t
@@ -64,16 +64,16 @@ SparseGrid::place (const GridPoint &point)
   if (is_new)
   {
     blocks_.emplace_back ();
-    blocks_.back ().first = { point.x & ~3, point.y & ~3, point.z & ~3 };
+    blocks_.back ().first = {point.x & ~3, point.y & ~3, point.z & ~3};
   }
-  return { entry->second, localOf (point) };
+  return {entry->second, localOf (point)};
 }
 
 GridPlace
 SparseGrid::find (const GridPoint &point) const
 {
   const auto entry = index_.find (keyOf (point));
-  return { entry == index_.end () ? -1 : entry->second, localOf (point) };
+  return {entry == index_.end () ? -1 : entry->second, localOf (point)};
 }
 
 std::array<double, 8>
@@ -85,8 +85,8 @@ SparseGrid::cornerValues (const GridPoint &cell) const
   for (int corner = 0; corner < 8; ++corner)
   {
     const GridPoint offset = cornerOffset (corner);
-    const GridPlace place = inside ? GridPlace{ lowest.block, lowest.local + offset.x + 4 * offset.y + 16 * offset.z }
-                                   : find (cell + offset);
+    const GridPlace place =
+        inside ? GridPlace{lowest.block, lowest.local + offset.x + 4 * offset.y + 16 * offset.z} : find (cell + offset);
     values[static_cast<std::size_t> (corner)] = block (place.block).values[static_cast<std::size_t> (place.local)];
   }
   return values;

@@ -19,7 +19,7 @@ struct GridPoint
   GridPoint
   operator+ (const GridPoint &o) const
   {
-    return { x + o.x, y + o.y, z + o.z };
+    return {x + o.x, y + o.y, z + o.z};
   }
 };
 
@@ -29,15 +29,15 @@ struct GridBlock
   static constexpr int SIDE = 4;
   static constexpr int NODES = SIDE * SIDE * SIDE;
 
-  GridPoint first;                          ///< lowest node
-  std::uint64_t known = 0;                  ///< nodes whose value is there
-  std::uint64_t needed = 0;                 ///< nodes whose value is asked for
-  std::uint64_t near = 0;                   ///< known nodes that are in reach of the data
-  std::uint64_t visited = 0;                ///< cells that were or will be looked at
-  std::uint64_t active = 0;                 ///< cells that the surface crosses
-  std::array<std::uint64_t, 3> cut{};       ///< per axis: edges from a node that carry a vertex
-  int first_vertex = 0;                     ///< index of the block's first vertex
-  std::array<double, NODES> values{};       ///< f - iso, NaN where f is undefined
+  GridPoint first;                    ///< lowest node
+  std::uint64_t known = 0;            ///< nodes whose value is there
+  std::uint64_t needed = 0;           ///< nodes whose value is asked for
+  std::uint64_t near = 0;             ///< known nodes that are in reach of the data
+  std::uint64_t visited = 0;          ///< cells that were or will be looked at
+  std::uint64_t active = 0;           ///< cells that the surface crosses
+  std::array<std::uint64_t, 3> cut{}; ///< per axis: edges from a node that carry a vertex
+  int first_vertex = 0;               ///< index of the block's first vertex
+  std::array<double, NODES> values{}; ///< f - iso, NaN where f is undefined
 };
 
 /** \brief Where a node lies: block and place in it. */
@@ -108,7 +108,7 @@ public:
   static GridPoint
   pointAt (const GridBlock &block, int local)
   {
-    return { block.first.x + (local & 3), block.first.y + ((local >> 2) & 3), block.first.z + (local >> 4) };
+    return {block.first.x + (local & 3), block.first.y + ((local >> 2) & 3), block.first.z + (local >> 4)};
   }
 
   bool
@@ -166,8 +166,8 @@ struct BlockPart
 };
 
 /** \brief The parts of a block, not much larger than the support: larger ones would gather nodes in vain.
-  * \param[in] support typical support radius, in voxels
-  */
+ * \param[in] support typical support radius, in voxels
+ */
 const std::vector<BlockPart> &
 partsOfBlock (double support);
 
@@ -175,7 +175,7 @@ partsOfBlock (double support);
 inline GridPoint
 cornerOffset (int corner)
 {
-  return { corner & 1, (corner >> 1) & 1, corner >> 2 };
+  return {corner & 1, (corner >> 1) & 1, corner >> 2};
 }
 
 } // namespace erkpa

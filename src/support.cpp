@@ -53,15 +53,16 @@ Support::search (const Eigen::Vector3d &center, double reach)
 }
 
 /** \brief Search as far as points of the ball reach to their k-th nodes.
-  *
-  * ε is 1-Lipschitz: a point at a distance d <= extent reaches at most ε(center) + d around itself. The radius at the
-  * last ball is the first guess, since balls follow each other in space; one search is much cheaper than two.
-  */
+ *
+ * ε is 1-Lipschitz: a point at a distance d <= extent reaches at most ε(center) + d around itself. The radius at the
+ * last ball is the first guess, since balls follow each other in space; one search is much cheaper than two.
+ */
 void
 Support::searchNearest (const Eigen::Vector3d &center, double extent)
 {
   const std::size_t k = std::min (static_cast<std::size_t> (field_.options ().k), field_.points ().size ());
-  double guess = 1.2 * (center_radius_ > 0.0 ? std::min (center_radius_, 2.0 * field_.typicalRadius ()) : field_.typicalRadius ());
+  double guess =
+      1.2 * (center_radius_ > 0.0 ? std::min (center_radius_, 2.0 * field_.typicalRadius ()) : field_.typicalRadius ());
   candidates_.clear ();
   constexpr double FARTHEST = 1e18; // its square is still a float
   for (; center.norm () < FARTHEST && guess < FARTHEST; guess *= 2.0)
@@ -150,8 +151,8 @@ Support::select (const Eigen::Vector3d &x)
     const double t = std::sqrt (squared_[i]) * scale;
     const double weight = PaperKernel::weight (t);
     if (weight > 0.0)
-      nodes_.push_back ({ static_cast<int> (i),
-                          Eigen::Vector3d (px_[i] - x[0], py_[i] - x[1], pz_[i] - x[2]) * scale, t, weight });
+      nodes_.push_back (
+          {static_cast<int> (i), Eigen::Vector3d (px_[i] - x[0], py_[i] - x[1], pz_[i] - x[2]) * scale, t, weight});
   }
   return nodes_.size () >= std::min (MIN_NODES, field_.points ().size ());
 }

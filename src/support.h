@@ -11,17 +11,17 @@ namespace erkpa
 /** \brief One node in the support of an evaluation point. */
 struct SupportNode
 {
-  int slot;                 ///< index into the gathered candidates
-  Eigen::Vector3d u;        ///< (x_i - x) / ε
-  double t;                 ///< |u|
-  double weight;            ///< w(t)
+  int slot;          ///< index into the gathered candidates
+  Eigen::Vector3d u; ///< (x_i - x) / ε
+  double t;          ///< |u|
+  double weight;     ///< w(t)
 };
 
 /** \brief The nodes that an evaluation point reaches, and how far it reaches: ε(x) and ∇ε(x).
-  *
-  * Candidates are gathered once for a ball and serve all points in it. They stay sorted by index, so that sums over
-  * them do not depend on the ball they were gathered for.
-  */
+ *
+ * Candidates are gathered once for a ball and serve all points in it. They stay sorted by index, so that sums over
+ * them do not depend on the ball they were gathered for.
+ */
 class Support
 {
 public:
@@ -32,8 +32,8 @@ public:
   gather (const Eigen::Vector3d &center, double extent);
 
   /** \brief Select the nodes in the support of \a x, which must lie in the ball gathered for.
-    * \return false where too few nodes are in reach to define the field
-    */
+   * \return false where too few nodes are in reach to define the field
+   */
   bool
   select (const Eigen::Vector3d &x);
 
@@ -63,7 +63,7 @@ public:
   }
 
   /** \brief The distance within which a quarter of the support's nodes lie: small on the surface that the nodes
-    * show, near ε away from it, and near ε too at a few stray nodes. */
+   * show, near ε away from it, and near ε too at a few stray nodes. */
   double
   quartileDistance () const;
 
@@ -91,8 +91,8 @@ private:
   Eigen::Vector3d center_ = Eigen::Vector3d::Zero (); // of the ball gathered for
   double center_radius_ = 0.0;                        // ε there
   std::vector<int> candidates_;
-  std::vector<double> px_, py_, pz_;  // positions of the candidates
-  std::vector<double> squared_;       // squared distances from x
+  std::vector<double> px_, py_, pz_; // positions of the candidates
+  std::vector<double> squared_;      // squared distances from x
   mutable std::vector<double> scratch_;
   std::vector<float> found_;
   std::vector<SupportNode> nodes_;

@@ -15,8 +15,8 @@ namespace
 {
 
 constexpr std::size_t MAX_ACTIVE_CELLS = 100000000; // some 100 GB of grid and mesh
-constexpr GridPoint ALONG[3] = { { 1, 0, 0 }, { 0, 1, 0 }, { 0, 0, 1 } };
-constexpr GridPoint AGAINST[3] = { { -1, 0, 0 }, { 0, -1, 0 }, { 0, 0, -1 } };
+constexpr GridPoint ALONG[3] = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
+constexpr GridPoint AGAINST[3] = {{-1, 0, 0}, {0, -1, 0}, {0, 0, -1}};
 
 } // namespace
 
@@ -32,7 +32,7 @@ isInReach (const LocalField &local, const PolygonizerOptions &options, double vo
 
 SurfaceTracker::SurfaceTracker (const ImplicitField &field, const PolygonizerOptions &options, SparseGrid &grid,
                                 PolygonizerReport &report, ProgressCallback progress)
-: field_ (field), options_ (options), grid_ (grid), report_ (report), progress_ (std::move (progress))
+    : field_ (field), options_ (options), grid_ (grid), report_ (report), progress_ (std::move (progress))
 {
 }
 
@@ -44,8 +44,8 @@ SurfaceTracker::track ()
   seedFromProjections ();
   followFront ();
   if (too_many_)
-    return { Status::GRID_TOO_FINE, "the surface crosses more than " + std::to_string (MAX_ACTIVE_CELLS) +
-                                        " grid cells: use a larger voxel size or a lower resolution" };
+    return {Status::GRID_TOO_FINE, "the surface crosses more than " + std::to_string (MAX_ACTIVE_CELLS) +
+                                       " grid cells: use a larger voxel size or a lower resolution"};
   return {};
 }
 
@@ -106,7 +106,8 @@ SurfaceTracker::evaluateRequested ()
     parallelFor (
         std::min (SLICE, requested_blocks_.size () - first), options_.threads, [this] { return LocalField (field_); },
         [&] (LocalField &local, std::size_t i) { evaluateBlock (local, grid_.block (requested_blocks_[first + i])); },
-        [this] (const LocalField &local) {
+        [this] (const LocalField &local)
+        {
           report_.evaluations += local.evaluations ();
           report_.support_nodes += local.supportNodes ();
         });
@@ -157,7 +158,7 @@ SurfaceTracker::classify (const GridPoint &cell)
   const GridPlace place = grid_.place (cell);
   grid_.block (place.block).active |= place.bit ();
   active_.push_back (cell);
-  constexpr unsigned LOW_FACES[3] = { 0x55, 0x33, 0x0f }; // the corners of a face as bits
+  constexpr unsigned LOW_FACES[3] = {0x55, 0x33, 0x0f}; // the corners of a face as bits
   for (int axis = 0; axis < 3; ++axis)
   {
     const unsigned low = inside & LOW_FACES[axis], high = inside & ~LOW_FACES[axis];
@@ -178,11 +179,11 @@ SurfaceTracker::seedFromNodes ()
 bool
 SurfaceTracker::findCellNear (const GridPoint &cell, GridPoint &found) const
 {
-  for (const int dx : { 0, -1, 1 })
-    for (const int dy : { 0, -1, 1 })
-      for (const int dz : { 0, -1, 1 })
+  for (const int dx : {0, -1, 1})
+    for (const int dy : {0, -1, 1})
+      for (const int dz : {0, -1, 1})
       {
-        found = cell + GridPoint{ dx, dy, dz };
+        found = cell + GridPoint{dx, dy, dz};
         if (grid_.isActive (found))
           return true;
       }
@@ -194,7 +195,7 @@ void
 SurfaceTracker::seedFromProjections ()
 {
   const auto &positions = field_.points ().positions;
-  cells_of_nodes_.assign (positions.size (), { NO_CELL, 0, 0 });
+  cells_of_nodes_.assign (positions.size (), {NO_CELL, 0, 0});
   std::vector<std::size_t> away;
   for (std::size_t i = 0; i < positions.size (); ++i)
   {
@@ -208,11 +209,13 @@ SurfaceTracker::seedFromProjections ()
   std::vector<char> has_foot (away.size (), 0);
   parallelFor (
       away.size (), options_.threads, [this] { return LocalField (field_); },
-      [&] (LocalField &local, std::size_t i) {
+      [&] (LocalField &local, std::size_t i)
+      {
         feet[i] = positions[away[i]].cast<double> ();
         has_foot[i] = project (local, feet[i]) ? 1 : 0;
       },
-      [this] (const LocalField &local) {
+      [this] (const LocalField &local)
+      {
         report_.evaluations += local.evaluations ();
         report_.support_nodes += local.supportNodes ();
       });

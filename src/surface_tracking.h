@@ -13,10 +13,10 @@ namespace erkpa
 {
 
 /** \brief Finds the cells that the surface crosses by following it from the cells of the nodes.
-  *
-  * Works in fronts: the corner values a front needs are evaluated together, block by block, each once; then every
-  * crossed cell hands the front on through the faces that the surface passes.
-  */
+ *
+ * Works in fronts: the corner values a front needs are evaluated together, block by block, each once; then every
+ * crossed cell hands the front on through the faces that the surface passes.
+ */
 class SurfaceTracker
 {
 public:
@@ -24,8 +24,8 @@ public:
                   PolygonizerReport &report, ProgressCallback progress);
 
   /** \brief Mark the active cells of the grid.
-    * \return Status::GRID_TOO_FINE where the surface passes more cells than fit in memory
-    */
+   * \return Status::GRID_TOO_FINE where the surface passes more cells than fit in memory
+   */
   Outcome
   track ();
 

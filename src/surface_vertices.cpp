@@ -59,8 +59,8 @@ private:
 };
 
 void
-storeVertex (const LocalField &local, const LocalSample &sample, const Eigen::Vector3d &position,
-             std::size_t vertex, int channels, SurfaceVertices &vertices)
+storeVertex (const LocalField &local, const LocalSample &sample, const Eigen::Vector3d &position, std::size_t vertex,
+             int channels, SurfaceVertices &vertices)
 {
   vertices.positions[vertex] = position;
   const double slope = sample.gradient.norm ();
@@ -79,9 +79,10 @@ placeVertices (const ImplicitField &field, const PolygonizerOptions &options, Sp
   const int channels = field.points ().channels;
   vertices.resize (static_cast<std::size_t> (grid.numberVertices ()), channels);
   const EdgeRoots roots (grid, options);
-  const auto place_on_edge = [&] (LocalField &local, const GridBlock &block, int node, int axis) {
+  const auto place_on_edge = [&] (LocalField &local, const GridBlock &block, int node, int axis)
+  {
     const GridPoint low = SparseGrid::pointAt (block, node);
-    const GridPlace high = grid.find ({ low.x + (axis == 0), low.y + (axis == 1), low.z + (axis == 2) });
+    const GridPlace high = grid.find ({low.x + (axis == 0), low.y + (axis == 1), low.z + (axis == 2)});
     LocalSample sample;
     const Eigen::Vector3d position =
         roots.find (local, low, axis, block.values[static_cast<std::size_t> (node)],
@@ -89,7 +90,8 @@ placeVertices (const ImplicitField &field, const PolygonizerOptions &options, Sp
     storeVertex (local, sample, position, static_cast<std::size_t> (SparseGrid::vertexOnEdge (block, node, axis)),
                  channels, vertices);
   };
-  const auto place_in_block = [&] (LocalField &local, std::size_t index) {
+  const auto place_in_block = [&] (LocalField &local, std::size_t index)
+  {
     const GridBlock &block = grid.block (static_cast<int> (index));
     for (const BlockPart &part : partsOfBlock (field.typicalRadius () / grid.voxelSize ()))
     {
@@ -110,7 +112,8 @@ placeVertices (const ImplicitField &field, const PolygonizerOptions &options, Sp
     parallelFor (
         std::min (SLICE, blocks - first), options.threads, [&] { return LocalField (field); },
         [&] (LocalField &local, std::size_t i) { place_in_block (local, first + i); },
-        [&report] (const LocalField &local) {
+        [&report] (const LocalField &local)
+        {
           report.evaluations += local.evaluations ();
           report.support_nodes += local.supportNodes ();
         });
@@ -125,7 +128,8 @@ projectVertices (const ImplicitField &field, const PolygonizerOptions &options, 
 {
   const int channels = field.points ().channels;
   vertices.resize (vertices.positions.size (), channels);
-  const auto project = [&] (LocalField &local, std::size_t i) {
+  const auto project = [&] (LocalField &local, std::size_t i)
+  {
     const std::size_t vertex = first + i;
     const Eigen::Vector3d start = vertices.positions[vertex];
     Eigen::Vector3d position = start;
@@ -144,7 +148,8 @@ projectVertices (const ImplicitField &field, const PolygonizerOptions &options, 
   };
   parallelFor (
       vertices.positions.size () - first, options.threads, [&] { return LocalField (field); }, project,
-      [&report] (const LocalField &local) {
+      [&report] (const LocalField &local)
+      {
         report.evaluations += local.evaluations ();
         report.support_nodes += local.supportNodes ();
       });

@@ -15,9 +15,9 @@ namespace erkpa
 struct SurfaceVertices
 {
   std::vector<Eigen::Vector3d> positions;
-  std::vector<Eigen::Vector3d> normals;   ///< unit, ∇f/|∇f|
-  std::vector<double> border_offsets;     ///< see LocalSample::border_offset
-  std::vector<float> attributes;          ///< channels values per vertex
+  std::vector<Eigen::Vector3d> normals; ///< unit, ∇f/|∇f|
+  std::vector<double> border_offsets;   ///< see LocalSample::border_offset
+  std::vector<float> attributes;        ///< channels values per vertex
 
   void
   resize (std::size_t size, int channels)
@@ -30,10 +30,10 @@ struct SurfaceVertices
 };
 
 /** \brief Put a vertex on every cut edge of the grid, on f = iso.
-  *
-  * The root on each edge is found by safeguarded Newton steps from the linear guess.
-  * \param[in,out] grid cut edges marked; vertices get numbered
-  */
+ *
+ * The root on each edge is found by safeguarded Newton steps from the linear guess.
+ * \param[in,out] grid cut edges marked; vertices get numbered
+ */
 void
 placeVertices (const ImplicitField &field, const PolygonizerOptions &options, SparseGrid &grid,
                SurfaceVertices &vertices, PolygonizerReport &report, const ProgressCallback &progress);

@@ -19,13 +19,13 @@ threadCount (int threads)
 }
 
 /** \brief Runs work (worker, i) for i = 0 .. count - 1 on several threads, with one worker per thread.
-  *
-  * Items must not depend on each other; then the result does not depend on the number of threads. An
-  * exception thrown by an item is thrown again here once all threads have stopped.
-  * \param[in] make_worker makes the scratch memory of one thread
-  * \param[in] work called once per item
-  * \param[in] finish called for each worker at the end, from the calling thread
-  */
+ *
+ * Items must not depend on each other; then the result does not depend on the number of threads. An
+ * exception thrown by an item is thrown again here once all threads have stopped.
+ * \param[in] make_worker makes the scratch memory of one thread
+ * \param[in] work called once per item
+ * \param[in] finish called for each worker at the end, from the calling thread
+ */
 template <typename MakeWorkerT, typename WorkT, typename FinishT>
 void
 parallelFor (std::size_t count, int threads, MakeWorkerT make_worker, WorkT work, FinishT finish)
@@ -36,9 +36,10 @@ parallelFor (std::size_t count, int threads, MakeWorkerT make_worker, WorkT work
   for (int t = 0; t < thread_count; ++t)
     workers.push_back (make_worker ());
 
-  const std::size_t chunk = std::clamp<std::size_t> (count / (4 * static_cast<std::size_t> (std::max (1, thread_count))), 1, 8);
+  const std::size_t chunk =
+      std::clamp<std::size_t> (count / (4 * static_cast<std::size_t> (std::max (1, thread_count))), 1, 8);
   std::exception_ptr failure;
-#pragma omp parallel for schedule(dynamic, chunk) num_threads (thread_count)
+#pragma omp parallel for schedule(dynamic, chunk) num_threads(thread_count)
   for (std::size_t i = 0; i < count; ++i)
   {
     try

@@ -27,8 +27,8 @@ collectEdges (const std::vector<std::array<int, 3>> &triangles)
     std::size_t end = i + 1;
     while (end < keys.size () && keys[end] == keys[i])
       ++end;
-    edges.push_back ({ static_cast<int> (keys[i] >> 32), static_cast<int> (keys[i] & 0xffffffffu),
-                       static_cast<int> (end - i) });
+    edges.push_back (
+        {static_cast<int> (keys[i] >> 32), static_cast<int> (keys[i] & 0xffffffffu), static_cast<int> (end - i)});
     i = end;
   }
   return edges;

@@ -89,7 +89,7 @@ box (int count, const Eigen::Vector3d &half, unsigned seed = 5)
   std::mt19937 random (seed);
   std::uniform_real_distribution<double> unit (-1.0, 1.0);
   const Eigen::Vector3d areas (half[1] * half[2], half[0] * half[2], half[0] * half[1]);
-  std::discrete_distribution<int> axis_of ({ areas[0], areas[1], areas[2] });
+  std::discrete_distribution<int> axis_of ({areas[0], areas[1], areas[2]});
   Samples samples;
   for (int i = 0; i < count; ++i)
   {
@@ -110,8 +110,8 @@ boxBisectors (const Eigen::Vector3d &half)
   std::vector<Eigen::Vector4d> planes;
   for (int a = 0; a < 3; ++a)
     for (int b = a + 1; b < 3; ++b)
-      for (const double sa : { -1.0, 1.0 })
-        for (const double sb : { -1.0, 1.0 })
+      for (const double sa : {-1.0, 1.0})
+        for (const double sb : {-1.0, 1.0})
         {
           Eigen::Vector3d normal = Eigen::Vector3d::Zero (), edge = Eigen::Vector3d::Zero ();
           normal[a] = sa * M_SQRT1_2;
@@ -139,7 +139,7 @@ sheet (int side, HeightT height)
       constexpr double STEP = 1e-5;
       const double slope_x = (height (x + STEP, y) - height (x - STEP, y)) / (2 * STEP);
       const double slope_y = (height (x, y + STEP) - height (x, y - STEP)) / (2 * STEP);
-      samples.add ({ x, y, height (x, y) }, Eigen::Vector3d (-slope_x, -slope_y, 1.0).normalized ());
+      samples.add ({x, y, height (x, y)}, Eigen::Vector3d (-slope_x, -slope_y, 1.0).normalized ());
     }
   return samples;
 }
@@ -186,9 +186,8 @@ volume (const erkpa::TriangleMesh &mesh)
   double sum = 0.0;
   for (const auto &t : mesh.triangles)
   {
-    const auto at = [&] (std::size_t i) {
-      return Eigen::Vector3d (mesh.vertices[static_cast<std::size_t> (t[i])].cast<double> ());
-    };
+    const auto at = [&] (std::size_t i)
+    { return Eigen::Vector3d (mesh.vertices[static_cast<std::size_t> (t[i])].cast<double> ()); };
     sum += at (0).dot (at (1).cross (at (2))) / 6.0;
   }
   return sum;
@@ -200,9 +199,8 @@ area (const erkpa::TriangleMesh &mesh)
   double sum = 0.0;
   for (const auto &t : mesh.triangles)
   {
-    const auto at = [&] (std::size_t i) {
-      return Eigen::Vector3d (mesh.vertices[static_cast<std::size_t> (t[i])].cast<double> ());
-    };
+    const auto at = [&] (std::size_t i)
+    { return Eigen::Vector3d (mesh.vertices[static_cast<std::size_t> (t[i])].cast<double> ()); };
     sum += 0.5 * (at (1) - at (0)).cross (at (2) - at (0)).norm ();
   }
   return sum;
@@ -211,12 +209,12 @@ area (const erkpa::TriangleMesh &mesh)
 /** \brief What the mesh contract forbids, counted without the library's own code. */
 struct Defects
 {
-  int open_edges = 0;        ///< edges of one triangle
-  int bad_edges = 0;         ///< edges of three or more triangles, or of two that disagree about the outside
-  int bad_vertices = 0;      ///< vertices around which the triangles form more than one fan
+  int open_edges = 0;   ///< edges of one triangle
+  int bad_edges = 0;    ///< edges of three or more triangles, or of two that disagree about the outside
+  int bad_vertices = 0; ///< vertices around which the triangles form more than one fan
   int unused_vertices = 0;
-  int flat_triangles = 0;    ///< no area, or a vertex used twice
-  int bad_normals = 0;       ///< not of unit length
+  int flat_triangles = 0; ///< no area, or a vertex used twice
+  int bad_normals = 0;    ///< not of unit length
 };
 
 inline Defects
@@ -229,13 +227,13 @@ defects (const erkpa::TriangleMesh &mesh)
     for (std::size_t i = 0; i < 3; ++i)
     {
       const int a = t[i], b = t[(i + 1) % 3], c = t[(i + 2) % 3];
-      ++directed[{ a, b }];
+      ++directed[{a, b}];
       around[a][b] = c;
     }
   for (const auto &[edge, count] : directed)
   {
     found.bad_edges += count > 1;
-    found.open_edges += directed.count ({ edge.second, edge.first }) == 0;
+    found.open_edges += directed.count ({edge.second, edge.first}) == 0;
   }
   for (auto &[vertex, links] : around)
   {
@@ -260,9 +258,8 @@ defects (const erkpa::TriangleMesh &mesh)
   found.unused_vertices = static_cast<int> (mesh.vertices.size () - around.size ());
   for (const auto &t : mesh.triangles)
   {
-    const auto at = [&] (std::size_t i) {
-      return Eigen::Vector3d (mesh.vertices[static_cast<std::size_t> (t[i])].cast<double> ());
-    };
+    const auto at = [&] (std::size_t i)
+    { return Eigen::Vector3d (mesh.vertices[static_cast<std::size_t> (t[i])].cast<double> ()); };
     found.flat_triangles += !((at (1) - at (0)).cross (at (2) - at (0)).norm () > 0.0);
   }
   for (const Eigen::Vector3f &n : mesh.normals)
@@ -273,14 +270,14 @@ defects (const erkpa::TriangleMesh &mesh)
 } // namespace shapes
 
 /** \brief Fails where a mesh breaks the contract; border edges are allowed in an open one. */
-#define EXPECT_MESH_CONTRACT(mesh, closed)                                                                           \
-  {                                                                                                                  \
-    const shapes::Defects found = shapes::defects (mesh);                                                            \
-    EXPECT_FALSE ((mesh).triangles.empty ());                                                                        \
-    EXPECT_EQ (found.bad_edges, 0);                                                                                  \
-    EXPECT_EQ (found.bad_vertices, 0);                                                                               \
-    EXPECT_EQ (found.unused_vertices, 0);                                                                            \
-    EXPECT_EQ (found.flat_triangles, 0);                                                                             \
-    EXPECT_EQ (found.bad_normals, 0);                                                                                \
-    EXPECT_TRUE (!(closed) || found.open_edges == 0) << found.open_edges << " open edges";                           \
+#define EXPECT_MESH_CONTRACT(mesh, closed)                                                                             \
+  {                                                                                                                    \
+    const shapes::Defects found = shapes::defects (mesh);                                                              \
+    EXPECT_FALSE ((mesh).triangles.empty ());                                                                          \
+    EXPECT_EQ (found.bad_edges, 0);                                                                                    \
+    EXPECT_EQ (found.bad_vertices, 0);                                                                                 \
+    EXPECT_EQ (found.unused_vertices, 0);                                                                              \
+    EXPECT_EQ (found.flat_triangles, 0);                                                                               \
+    EXPECT_EQ (found.bad_normals, 0);                                                                                  \
+    EXPECT_TRUE (!(closed) || found.open_edges == 0) << found.open_edges << " open edges";                             \
   }

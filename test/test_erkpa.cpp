@@ -33,7 +33,7 @@ fromPcl (const pcl::PolygonMesh &mesh)
     result.normals.emplace_back (p.getNormalVector3fMap ());
   }
   for (const pcl::Vertices &polygon : mesh.polygons)
-    result.triangles.push_back ({ polygon.vertices[0], polygon.vertices[1], polygon.vertices[2] });
+    result.triangles.push_back ({polygon.vertices[0], polygon.vertices[1], polygon.vertices[2]});
   return result;
 }
 
@@ -175,7 +175,7 @@ TEST (Erkpa, KeepsTheHeaderInMeshAndCloud)
   erkpa.setInputCloud (cloud);
   pcl::PolygonMesh mesh;
   erkpa.reconstruct (mesh);
-  for (const pcl::PCLHeader &header : { mesh.header, mesh.cloud.header })
+  for (const pcl::PCLHeader &header : {mesh.header, mesh.cloud.header})
   {
     EXPECT_EQ (header.frame_id, "camera_link");
     EXPECT_EQ (header.stamp, 123456u);
@@ -188,7 +188,7 @@ TEST (Erkpa, KeepsTheHeaderInMeshAndCloud)
 
 TEST (Erkpa, UsesOnlyThePointsOfTheIndices)
 {
-  shapes::Samples scene = shapes::sphere (2000, 1.0, { 5.0, 0.0, 0.0 });
+  shapes::Samples scene = shapes::sphere (2000, 1.0, {5.0, 0.0, 0.0});
   const shapes::Samples wanted = shapes::sphere (2000);
   const pcl::IndicesPtr indices (new pcl::Indices);
   for (std::size_t i = 0; i < wanted.size (); ++i)
@@ -209,9 +209,9 @@ TEST (Erkpa, RefusesIndicesOutsideTheCloud)
 {
   ERKPA<pcl::PointNormal> erkpa;
   erkpa.setInputCloud (shapes::cloud<pcl::PointNormal> (shapes::sphere (100)));
-  for (const int bad : { -1, 100 })
+  for (const int bad : {-1, 100})
   {
-    erkpa.setIndices (std::make_shared<pcl::Indices> (pcl::Indices{ 0, 1, 2, 3, bad }));
+    erkpa.setIndices (std::make_shared<pcl::Indices> (pcl::Indices{0, 1, 2, 3, bad}));
     pcl::PolygonMesh mesh = usedMesh ();
     erkpa.reconstruct (mesh);
     EXPECT_EQ (erkpa.getStatus (), Status::BAD_INDICES);
@@ -236,7 +236,7 @@ TEST (Erkpa, SaysThatThereIsNoInput)
 
 TEST (Erkpa, SaysThatThereAreTooFewPoints)
 {
-  for (const int count : { 0, 1, 2, 3 })
+  for (const int count : {0, 1, 2, 3})
   {
     const auto cloud = shapes::cloud<pcl::PointNormal> (shapes::sphere (count));
     ERKPA<pcl::PointNormal> erkpa;
@@ -253,11 +253,11 @@ TEST (Erkpa, SurvivesDegenerateCloudsWithAStatus)
   shapes::Samples line, spot;
   for (int i = 0; i < 100; ++i)
   {
-    line.add ({ 0.01 * i, 0.0, 0.0 }, Eigen::Vector3d::UnitZ ());
-    spot.add ({ 1.0, 2.0, 3.0 }, Eigen::Vector3d::UnitZ ());
+    line.add ({0.01 * i, 0.0, 0.0}, Eigen::Vector3d::UnitZ ());
+    spot.add ({1.0, 2.0, 3.0}, Eigen::Vector3d::UnitZ ());
   }
-  for (const shapes::Samples &samples : { line, spot, shapes::sphere (5) })
-    for (const bool with_normals : { true, false })
+  for (const shapes::Samples &samples : {line, spot, shapes::sphere (5)})
+    for (const bool with_normals : {true, false})
     {
       auto cloud = shapes::cloud<pcl::PointNormal> (samples);
       if (!with_normals)
@@ -327,7 +327,7 @@ TEST (Erkpa, TakesTheViewPointFromTheSensorUnlessItIsGiven)
   cloud->sensor_origin_ = Eigen::Vector4f (0.0f, 0.0f, -4.0f, 0.0f);
   ERKPA<pcl::PointXYZ> erkpa;
   erkpa.setInputCloud (cloud);
-  const auto looks_up = [&] { return erkpa.computeField ()->sample ({ 0.0, 0.0, 0.0 }).gradient.z () > 0.0; };
+  const auto looks_up = [&] { return erkpa.computeField ()->sample ({0.0, 0.0, 0.0}).gradient.z () > 0.0; };
   EXPECT_FALSE (looks_up ());
   erkpa.setViewPoint (0.0f, 0.0f, 4.0f);
   EXPECT_TRUE (looks_up ());
@@ -358,8 +358,8 @@ TEST (Erkpa, UsesTheSearchMethodItIsGiven)
   plain.setInputCloud (cloud);
   plain.reconstruct (expected);
   const pcl::search::Search<pcl::PointNormal>::Ptr searches[] = {
-    std::make_shared<pcl::search::KdTree<pcl::PointNormal>> (),
-    std::make_shared<pcl::search::Octree<pcl::PointNormal>> (0.2),
+      std::make_shared<pcl::search::KdTree<pcl::PointNormal>> (),
+      std::make_shared<pcl::search::Octree<pcl::PointNormal>> (0.2),
   };
   for (const auto &search : searches)
   {
@@ -376,18 +376,18 @@ TEST (Erkpa, UsesTheSearchMethodItIsGiven)
 TEST (Erkpa, SharpEdgesTakePlanesOfAnyScaleAndRefuseOthers)
 {
   ERKPA<pcl::PointNormal> erkpa;
-  EXPECT_TRUE (erkpa.addSharpEdge (coefficients ({ 0.0f, -20.0f, 0.0f, 4.0f })));
-  EXPECT_FALSE (erkpa.addSharpEdge (coefficients ({ 1.0f, 0.0f, 0.0f })));
-  EXPECT_FALSE (erkpa.addSharpEdge (coefficients ({ 1.0f, 0.0f, 0.0f, 0.0f, 1.0f })));
-  EXPECT_FALSE (erkpa.addSharpEdge (coefficients ({ 0.0f, 0.0f, 0.0f, 1.0f })));
-  EXPECT_FALSE (erkpa.addSharpEdge (coefficients ({ 1.0f, NOT_A_NUMBER, 0.0f, 1.0f })));
+  EXPECT_TRUE (erkpa.addSharpEdge (coefficients ({0.0f, -20.0f, 0.0f, 4.0f})));
+  EXPECT_FALSE (erkpa.addSharpEdge (coefficients ({1.0f, 0.0f, 0.0f})));
+  EXPECT_FALSE (erkpa.addSharpEdge (coefficients ({1.0f, 0.0f, 0.0f, 0.0f, 1.0f})));
+  EXPECT_FALSE (erkpa.addSharpEdge (coefficients ({0.0f, 0.0f, 0.0f, 1.0f})));
+  EXPECT_FALSE (erkpa.addSharpEdge (coefficients ({1.0f, NOT_A_NUMBER, 0.0f, 1.0f})));
   ASSERT_EQ (erkpa.getSharpEdges ().size (), 1u);
   const auto &surface = erkpa.getOptions ().field.sharp_surfaces.front ();
-  EXPECT_NEAR (surface->theta ({ 7.0, 1.2, 3.0 }), -1.0, 1e-6);
+  EXPECT_NEAR (surface->theta ({7.0, 1.2, 3.0}), -1.0, 1e-6);
 
-  EXPECT_FALSE (erkpa.setSharpEdges ({ coefficients ({ 1, 0, 0, 0 }), coefficients ({ 0, 0, 0, 0 }) }));
+  EXPECT_FALSE (erkpa.setSharpEdges ({coefficients ({1, 0, 0, 0}), coefficients ({0, 0, 0, 0})}));
   EXPECT_EQ (erkpa.getSharpEdges ().front ().values[1], -20.0f); // as before
-  EXPECT_TRUE (erkpa.setSharpEdges ({ coefficients ({ 1, 0, 0, 0 }), coefficients ({ 0, 1, 0, 0 }) }));
+  EXPECT_TRUE (erkpa.setSharpEdges ({coefficients ({1, 0, 0, 0}), coefficients ({0, 1, 0, 0})}));
   EXPECT_EQ (erkpa.getOptions ().field.sharp_surfaces.size (), 2u);
   erkpa.clearSharpEdges ();
   EXPECT_TRUE (erkpa.getSharpEdges ().empty ());
@@ -399,11 +399,10 @@ TEST (Erkpa, SharpEdgesReachTheSurface)
   const Eigen::Vector3d half (1.0, 0.7, 0.5);
   ERKPA<pcl::PointNormal> erkpa;
   erkpa.setInputCloud (shapes::cloud<pcl::PointNormal> (shapes::box (8000, half)));
-  const auto value_on_edge = [&] { return std::abs (erkpa.computeField ()->value ({ 1.0, 0.7, 0.1 })); };
+  const auto value_on_edge = [&] { return std::abs (erkpa.computeField ()->value ({1.0, 0.7, 0.1})); };
   EXPECT_GT (value_on_edge (), 1e-3);
   for (const Eigen::Vector4d &b : shapes::boxBisectors (half))
-    ASSERT_TRUE (erkpa.addSharpEdge (
-        coefficients ({ float (b[0]), float (b[1]), float (b[2]), float (b[3]) })));
+    ASSERT_TRUE (erkpa.addSharpEdge (coefficients ({float (b[0]), float (b[1]), float (b[2]), float (b[3])})));
   EXPECT_LT (value_on_edge (), 1e-5);
 }
 
@@ -464,6 +463,6 @@ TEST (Erkpa, ReconstructsACloudWhoseFieldsAreKnownAtRunTime)
   EXPECT_TRUE (erkpa::reconstruct (cloud, {}, mesh, report, &field).ok ());
   expectSphere<pcl::PointXYZINormal> (mesh);
   ASSERT_NE (field, nullptr);
-  EXPECT_NEAR (field->value ({ 1.1, 0.0, 0.0 }), 0.1, 0.01);
+  EXPECT_NEAR (field->value ({1.1, 0.0, 0.0}), 0.1, 0.01);
   EXPECT_EQ (report.triangles, mesh.polygons.size ());
 }

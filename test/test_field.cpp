@@ -7,10 +7,10 @@
 #include <functional>
 #include <string>
 
+using Eigen::Vector3d;
 using erkpa::FieldOptions;
 using erkpa::ImplicitField;
 using erkpa::Order;
-using Eigen::Vector3d;
 
 namespace
 {
@@ -21,7 +21,7 @@ Vector3d
 randomPoint (double size)
 {
   std::uniform_real_distribution<double> uniform (-size, size);
-  return { uniform (random_engine), uniform (random_engine), uniform (random_engine) };
+  return {uniform (random_engine), uniform (random_engine), uniform (random_engine)};
 }
 
 /** \brief Nodes all through a cube, as a fit in space needs them. */
@@ -82,17 +82,17 @@ optionsOf (Order order, int k, double radius = 0.0)
 }
 
 const std::vector<std::pair<std::string, Function>> MONOMIALS = {
-  { "1", [] (const Vector3d &) { return 1.0; } },
-  { "x", [] (const Vector3d &p) { return p.x (); } },
-  { "y", [] (const Vector3d &p) { return p.y (); } },
-  { "z", [] (const Vector3d &p) { return p.z (); } },
-  { "x²+y²+z²", [] (const Vector3d &p) { return p.squaredNorm (); } },
-  { "x²", [] (const Vector3d &p) { return p.x () * p.x (); } },
-  { "y²", [] (const Vector3d &p) { return p.y () * p.y (); } },
-  { "z²", [] (const Vector3d &p) { return p.z () * p.z (); } },
-  { "xy", [] (const Vector3d &p) { return p.x () * p.y (); } },
-  { "xz", [] (const Vector3d &p) { return p.x () * p.z (); } },
-  { "yz", [] (const Vector3d &p) { return p.y () * p.z (); } },
+    {"1", [] (const Vector3d &) { return 1.0; }},
+    {"x", [] (const Vector3d &p) { return p.x (); }},
+    {"y", [] (const Vector3d &p) { return p.y (); }},
+    {"z", [] (const Vector3d &p) { return p.z (); }},
+    {"x²+y²+z²", [] (const Vector3d &p) { return p.squaredNorm (); }},
+    {"x²", [] (const Vector3d &p) { return p.x () * p.x (); }},
+    {"y²", [] (const Vector3d &p) { return p.y () * p.y (); }},
+    {"z²", [] (const Vector3d &p) { return p.z () * p.z (); }},
+    {"xy", [] (const Vector3d &p) { return p.x () * p.y (); }},
+    {"xz", [] (const Vector3d &p) { return p.x () * p.z (); }},
+    {"yz", [] (const Vector3d &p) { return p.y () * p.z (); }},
 };
 
 } // namespace
@@ -100,9 +100,9 @@ const std::vector<std::pair<std::string, Function>> MONOMIALS = {
 TEST (Field, ReproducesEveryFunctionOfItsBasis)
 {
   const shapes::Samples nodes = nodesInCube (2000);
-  const std::pair<Order, std::size_t> sizes[] = { { Order::LINEAR, 4 }, { Order::SPHERICAL, 5 }, { Order::QUADRATIC, 11 } };
+  const std::pair<Order, std::size_t> sizes[] = {{Order::LINEAR, 4}, {Order::SPHERICAL, 5}, {Order::QUADRATIC, 11}};
   for (const auto &[order, count] : sizes)
-    for (const double radius : { 0.0, 0.4 })
+    for (const double radius : {0.0, 0.4})
     {
       const auto field = shapes::field (nodes, optionsOf (order, 40, radius));
       for (std::size_t i = 0; i < count; ++i)
@@ -132,7 +132,7 @@ TEST (Field, ConstantOrderIsAPartitionOfUnityOverTheTangentPlanesOfTheNodes)
 
 TEST (Field, ShapeFunctionsSumToOneInEveryOrder)
 {
-  for (const Order order : { Order::CONSTANT, Order::LINEAR, Order::SPHERICAL, Order::QUADRATIC })
+  for (const Order order : {Order::CONSTANT, Order::LINEAR, Order::SPHERICAL, Order::QUADRATIC})
   {
     const auto field = shapes::field (nodesInCube (1000), optionsOf (order, 30));
     expectReproduced (*field, MONOMIALS[0].second, "1", 1e-9);
@@ -142,7 +142,7 @@ TEST (Field, ShapeFunctionsSumToOneInEveryOrder)
 TEST (Field, ShapeFunctionsGiveTheFieldItself)
 {
   FieldOptions options = optionsOf (Order::SPHERICAL, 30);
-  options.sharp_surfaces.push_back (shapes::plane ({ 1.0, 0.3, -0.2, 0.05 }));
+  options.sharp_surfaces.push_back (shapes::plane ({1.0, 0.3, -0.2, 0.05}));
   const auto field = shapes::field (nodesInCube (1000), options);
   for (int i = 0; i < 20; ++i)
   {
@@ -159,27 +159,29 @@ TEST (Field, ReproducesTheMaximumAndMinimumOfTwoPlanesAcrossTheirBisector)
   const Vector3d a (1.0, 0.2, 0.1), b (-0.3, 0.9, 0.2);
   const Vector3d between = b - a;
   FieldOptions options = optionsOf (Order::SPHERICAL, 60);
-  options.sharp_surfaces.push_back (shapes::plane ({ between[0], between[1], between[2], 0.0 }));
+  options.sharp_surfaces.push_back (shapes::plane ({between[0], between[1], between[2], 0.0}));
   const auto field = shapes::field (nodesInCube (2000), options);
-  expectReproduced (*field, [&] (const Vector3d &p) { return std::max (a.dot (p), b.dot (p)); }, "max", 1e-5);
-  expectReproduced (*field, [&] (const Vector3d &p) { return std::min (a.dot (p), b.dot (p)); }, "min", 1e-5);
+  expectReproduced (
+      *field, [&] (const Vector3d &p) { return std::max (a.dot (p), b.dot (p)); }, "max", 1e-5);
+  expectReproduced (
+      *field, [&] (const Vector3d &p) { return std::min (a.dot (p), b.dot (p)); }, "min", 1e-5);
 }
 
 TEST (Field, ReproducesCornersOfThreePlanesWhateverTheSignAndScaleOfTheBisectors)
 {
   const Vector3d a (1.0, 0.2, 0.1), b (-0.3, 0.9, 0.2), c (0.1, -0.4, 0.8);
-  const Function convex = [&] (const Vector3d &p) { return std::max ({ a.dot (p), b.dot (p), c.dot (p) }); };
-  const Function concave = [&] (const Vector3d &p) { return std::min ({ a.dot (p), b.dot (p), c.dot (p) }); };
+  const Function convex = [&] (const Vector3d &p) { return std::max ({a.dot (p), b.dot (p), c.dot (p)}); };
+  const Function concave = [&] (const Vector3d &p) { return std::min ({a.dot (p), b.dot (p), c.dot (p)}); };
   const Function saddle = [&] (const Vector3d &p) { return std::max (a.dot (p), std::min (b.dot (p), c.dot (p))); };
   const shapes::Samples nodes = nodesInCube (6000);
   for (int signs = 0; signs < 8; ++signs)
   {
     FieldOptions options = optionsOf (Order::LINEAR, 0, 0.45);
     int bit = 0;
-    for (const Vector3d &between : { Vector3d (b - a), Vector3d (c - a), Vector3d (c - b) })
+    for (const Vector3d &between : {Vector3d (b - a), Vector3d (c - a), Vector3d (c - b)})
     {
       const Vector3d n = (signs >> bit++ & 1 ? -2.5 : 1.0) * between;
-      options.sharp_surfaces.push_back (shapes::plane ({ n[0], n[1], n[2], 0.0 }));
+      options.sharp_surfaces.push_back (shapes::plane ({n[0], n[1], n[2], 0.0}));
     }
     const auto field = shapes::field (nodes, options);
     for (int i = 0; i < 10; ++i)
@@ -199,7 +201,7 @@ TEST (Field, IsExactOnPlanesAndSpheres)
   for (int i = 0; i < 50; ++i)
   {
     const Vector3d p = randomPoint (0.5);
-    EXPECT_NEAR (flat->value ({ p.x (), p.y (), 0.1 * p.z () }), 0.1 * p.z (), 1e-6);
+    EXPECT_NEAR (flat->value ({p.x (), p.y (), 0.1 * p.z ()}), 0.1 * p.z (), 1e-6);
     const Vector3d on = 2.0 * p.normalized ();
     EXPECT_NEAR (round->value (on), 0.0, 1e-5);
     EXPECT_GT (round->value (1.05 * on), 0.0);
@@ -209,14 +211,14 @@ TEST (Field, IsExactOnPlanesAndSpheres)
 
 TEST (Field, GradientAgreesWithFiniteDifferences)
 {
-  const shapes::Samples box = shapes::box (4000, { 1.0, 0.7, 0.5 });
-  for (const Order order : { Order::CONSTANT, Order::LINEAR, Order::SPHERICAL, Order::QUADRATIC })
-    for (const double radius : { 0.0, 0.25 })
-      for (const bool sharp : { false, true })
+  const shapes::Samples box = shapes::box (4000, {1.0, 0.7, 0.5});
+  for (const Order order : {Order::CONSTANT, Order::LINEAR, Order::SPHERICAL, Order::QUADRATIC})
+    for (const double radius : {0.0, 0.25})
+      for (const bool sharp : {false, true})
       {
         FieldOptions options = optionsOf (order, 20, radius);
         if (sharp)
-          for (const Eigen::Vector4d &bisector : shapes::boxBisectors ({ 1.0, 0.7, 0.5 }))
+          for (const Eigen::Vector4d &bisector : shapes::boxBisectors ({1.0, 0.7, 0.5}))
             options.sharp_surfaces.push_back (shapes::plane (bisector));
         const auto field = shapes::field (box, options);
         const Function f = [&] (const Vector3d &p) { return field->value (p); };
@@ -241,9 +243,9 @@ TEST (Field, GradientAgreesWithFiniteDifferences)
 TEST (Field, IsTheSameOneByOneAndInBatchesAndInAnyNumberOfThreads)
 {
   FieldOptions options;
-  for (const Eigen::Vector4d &bisector : shapes::boxBisectors ({ 1.0, 0.7, 0.5 }))
+  for (const Eigen::Vector4d &bisector : shapes::boxBisectors ({1.0, 0.7, 0.5}))
     options.sharp_surfaces.push_back (shapes::plane (bisector));
-  const shapes::Samples box = shapes::box (3000, { 1.0, 0.7, 0.5 });
+  const shapes::Samples box = shapes::box (3000, {1.0, 0.7, 0.5});
   const auto field = shapes::field (box, options);
   std::vector<Vector3d> points;
   for (std::size_t i = 0; i < 300; ++i)
@@ -287,13 +289,13 @@ TEST (Field, IsZeroOnTheEdgesAndCornersOfABoxWithSharpPlanes)
   for (const Eigen::Vector4d &bisector : shapes::boxBisectors (half))
   {
     const Vector3d n = attitude * bisector.head<3> ();
-    options.sharp_surfaces.push_back (shapes::plane ({ n[0], n[1], n[2], bisector[3] - n.dot (offset) }));
+    options.sharp_surfaces.push_back (shapes::plane ({n[0], n[1], n[2], bisector[3] - n.dot (offset)}));
   }
   const auto field = shapes::field (shapes::box (20000, half).moved (attitude, 1.0, offset), options);
   std::vector<Vector3d> points;
   for (int axis = 0; axis < 3; ++axis)
-    for (const double sb : { -1.0, 1.0 })
-      for (const double sc : { -1.0, 1.0 })
+    for (const double sb : {-1.0, 1.0})
+      for (const double sc : {-1.0, 1.0})
         for (double t = -1.0; t <= 1.0; t += 0.05)
         {
           Vector3d p;
@@ -313,14 +315,14 @@ TEST (Field, SharpPlaneDropsOutWithoutAJumpWhereItsSupportLiesOnOneSide)
   // A roof along y = 0, and a path that leaves its ridge until all nodes in reach lie on one slope.
   const auto roof = [] (double, double y) { return -0.6 * std::abs (y); };
   FieldOptions options = optionsOf (Order::SPHERICAL, 0, 0.3);
-  options.sharp_surfaces.push_back (shapes::plane ({ 0.0, 1.0, 0.0, 0.0 }));
+  options.sharp_surfaces.push_back (shapes::plane ({0.0, 1.0, 0.0, 0.0}));
   const auto field = shapes::field (shapes::sheet (60, roof), options);
-  for (const double height : { -0.05, 0.0, 0.05 })
+  for (const double height : {-0.05, 0.0, 0.05})
   {
-    double last = field->value ({ 0.0, 0.0, roof (0, 0.0) + height });
+    double last = field->value ({0.0, 0.0, roof (0, 0.0) + height});
     for (double y = 1e-4; y < 0.5; y += 1e-4)
     {
-      const double value = field->value ({ 0.0, y, roof (0, y) + height });
+      const double value = field->value ({0.0, y, roof (0, y) + height});
       EXPECT_LT (std::abs (value - last), 4e-4) << "y = " << y;
       last = value;
     }
@@ -330,24 +332,24 @@ TEST (Field, SharpPlaneDropsOutWithoutAJumpWhereItsSupportLiesOnOneSide)
 TEST (Field, IsUndefinedWhereTooFewNodesAreInReach)
 {
   const auto field = shapes::field (shapes::sphere (500), optionsOf (Order::SPHERICAL, 0, 0.2));
-  EXPECT_TRUE (field->sample ({ 1.0, 0.0, 0.0 }).isDefined ());
-  EXPECT_FALSE (field->sample ({ 0.0, 0.0, 0.0 }).isDefined ());
-  EXPECT_TRUE (std::isnan (field->value ({ 9.0, 0.0, 0.0 })));
-  EXPECT_TRUE (field->shapeFunctions ({ 9.0, 0.0, 0.0 }).empty ());
+  EXPECT_TRUE (field->sample ({1.0, 0.0, 0.0}).isDefined ());
+  EXPECT_FALSE (field->sample ({0.0, 0.0, 0.0}).isDefined ());
+  EXPECT_TRUE (std::isnan (field->value ({9.0, 0.0, 0.0})));
+  EXPECT_TRUE (field->shapeFunctions ({9.0, 0.0, 0.0}).empty ());
 }
 
 TEST (Field, StaysDefinedAndFiniteFarFromThePointsWithANeighbourSupport)
 {
   const auto field = shapes::field (shapes::sphere (500));
-  for (const double far : { 1e1, 1e3, 1e6 })
-    EXPECT_TRUE (std::isfinite (field->value ({ far, 0.0, 0.0 })));
-  EXPECT_FALSE (field->sample ({ 1e30, 0.0, 0.0 }).isDefined ());
+  for (const double far : {1e1, 1e3, 1e6})
+    EXPECT_TRUE (std::isfinite (field->value ({far, 0.0, 0.0})));
+  EXPECT_FALSE (field->sample ({1e30, 0.0, 0.0}).isDefined ());
 }
 
 TEST (Field, NamesTheSettingThatMakesNoSense)
 {
-  for (const auto &options : { optionsOf (Order::LINEAR, 3), optionsOf (Order::LINEAR, -1),
-                               optionsOf (Order::LINEAR, 0, -0.1), optionsOf (Order::LINEAR, 0, std::nan ("")) })
+  for (const auto &options : {optionsOf (Order::LINEAR, 3), optionsOf (Order::LINEAR, -1),
+                              optionsOf (Order::LINEAR, 0, -0.1), optionsOf (Order::LINEAR, 0, std::nan (""))})
   {
     const erkpa::Outcome outcome = ImplicitField::checkOptions (options);
     EXPECT_EQ (outcome.status, erkpa::Status::INVALID_SETTING);

@@ -5,10 +5,10 @@
 
 #include <gtest/gtest.h>
 
+using Eigen::Vector3d;
 using erkpa::NormalOptions;
 using erkpa::Orientation;
 using erkpa::OrientedPoints;
-using Eigen::Vector3d;
 
 namespace
 {
@@ -52,8 +52,8 @@ seenFrom (const Vector3d &view_point)
 TEST (Normals, PointOutwardsWhereNoViewPointIsKnown)
 {
   Orientation orientation = Orientation::NONE;
-  for (const shapes::Samples &shape : { shapes::sphere (3000, 1.0, { 0.2, 5.0, 1.0 }), shapes::torus (5000, 1.0, 0.4),
-                                        shapes::box (6000, { 1.0, 0.7, 0.5 }) })
+  for (const shapes::Samples &shape : {shapes::sphere (3000, 1.0, {0.2, 5.0, 1.0}), shapes::torus (5000, 1.0, 0.4),
+                                       shapes::box (6000, {1.0, 0.7, 0.5})})
   {
     const OrientedPoints points = estimate (shape, {}, orientation);
     EXPECT_EQ (orientation, Orientation::PROPAGATION);
@@ -65,18 +65,18 @@ TEST (Normals, FaceTheViewPointThatSawTheSurface)
 {
   const shapes::Samples sheet = shapes::sheet (40, [] (double x, double) { return 0.2 * std::sin (3.0 * x); });
   Orientation orientation = Orientation::NONE;
-  const OrientedPoints above = estimate (sheet, seenFrom ({ 0.0, 0.0, 5.0 }), orientation);
+  const OrientedPoints above = estimate (sheet, seenFrom ({0.0, 0.0, 5.0}), orientation);
   EXPECT_EQ (orientation, Orientation::VIEW_POINT);
   EXPECT_EQ (shareThatAgrees (above, sheet.normals), 1.0);
-  const OrientedPoints below = estimate (sheet, seenFrom ({ 0.0, 0.0, -5.0 }), orientation);
+  const OrientedPoints below = estimate (sheet, seenFrom ({0.0, 0.0, -5.0}), orientation);
   EXPECT_EQ (shareThatAgrees (below, sheet.normals), 0.0);
 }
 
 TEST (Normals, FaceTheSensorInTheMiddleOfARoom)
 {
-  const shapes::Samples room = shapes::box (6000, { 2.0, 3.0, 1.0 });
+  const shapes::Samples room = shapes::box (6000, {2.0, 3.0, 1.0});
   Orientation orientation = Orientation::NONE;
-  const OrientedPoints points = estimate (room, seenFrom ({ 0.1, 0.2, 0.0 }), orientation);
+  const OrientedPoints points = estimate (room, seenFrom ({0.1, 0.2, 0.0}), orientation);
   EXPECT_EQ (orientation, Orientation::VIEW_POINT);
   EXPECT_LT (shareThatAgrees (points, room.normals), 0.001);
 }
@@ -85,7 +85,7 @@ TEST (Normals, PointOutwardsWhereTheViewPointCannotHaveSeenTheSurface)
 {
   const shapes::Samples sphere = shapes::sphere (4000);
   Orientation orientation = Orientation::NONE;
-  const OrientedPoints points = estimate (sphere, seenFrom ({ 0.0, 0.0, 3.0 }), orientation);
+  const OrientedPoints points = estimate (sphere, seenFrom ({0.0, 0.0, 3.0}), orientation);
   EXPECT_EQ (orientation, Orientation::PROPAGATION);
   EXPECT_EQ (shareThatAgrees (points, sphere.normals), 1.0);
 }
@@ -114,8 +114,7 @@ TEST (Normals, ThatWereGivenStayAndGiveTheOthersTheirSign)
   }
   const std::vector<Eigen::Vector3f> before = points.normals;
   Orientation orientation = Orientation::NONE;
-  ASSERT_TRUE (
-      erkpa::estimateNormals (points, *erkpa::makeKdTreeSearch (points.positions), {}, orientation).ok ());
+  ASSERT_TRUE (erkpa::estimateNormals (points, *erkpa::makeKdTreeSearch (points.positions), {}, orientation).ok ());
   for (std::size_t i = 0; i < points.size (); i += 10)
     EXPECT_EQ (points.normals[i], before[i]);
   EXPECT_EQ (shareThatAgrees (points, sphere.normals), 0.0); // all inwards, as those that were given

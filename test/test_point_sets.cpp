@@ -103,7 +103,7 @@ TEST (PointSets, FandiskIsClosedAtAnyNumberOfSamples)
   const std::string path = pathOf ("ERKPA_CGAL_DATA", "meshes/fandisk.off");
   if (path.empty ())
     GTEST_SKIP () << "needs meshes/fandisk.off of libcgal-demo in ERKPA_CGAL_DATA";
-  for (const int count : { 10000, 30000 })
+  for (const int count : {10000, 30000})
     for (unsigned seed = 1; seed <= 2; ++seed)
     {
       const erkpa::TriangleMesh mesh = meshOf (sampleOff (path, count, seed));

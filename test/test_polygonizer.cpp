@@ -10,10 +10,10 @@
 #include <algorithm>
 #include <array>
 
+using Eigen::Vector3d;
 using erkpa::PolygonizerOptions;
 using erkpa::Status;
 using erkpa::TriangleMesh;
-using Eigen::Vector3d;
 
 namespace
 {
@@ -82,7 +82,7 @@ TEST (CellLoops, RunCounterClockwiseSeenFromOutside)
 
 TEST (Polygonizer, MakesAClosedSphereOfTheRightVolumeAndArea)
 {
-  const TriangleMesh mesh = meshOf (*shapes::field (shapes::sphere (4000, 2.0, { 1.0, 2.0, 3.0 })));
+  const TriangleMesh mesh = meshOf (*shapes::field (shapes::sphere (4000, 2.0, {1.0, 2.0, 3.0})));
   EXPECT_MESH_CONTRACT (mesh, true);
   const erkpa::MeshTopology topology = erkpa::measureTopology (mesh);
   EXPECT_EQ (topology.components, 1u);
@@ -120,7 +120,8 @@ TEST (Polygonizer, FillsABoxToItsEdgesWhenTheyAreSharp)
   EXPECT_MESH_CONTRACT (exact, true);
   EXPECT_EQ (erkpa::measureTopology (exact).euler, 2);
   EXPECT_NEAR (shapes::volume (exact), 2.8, 0.01);
-  const auto farthest_off = [&half] (const TriangleMesh &mesh) {
+  const auto farthest_off = [&half] (const TriangleMesh &mesh)
+  {
     double distance = 0.0;
     for (const Eigen::Vector3f &v : mesh.vertices)
       distance = std::max (distance, std::abs ((v.cast<double> ().cwiseAbs () - half).maxCoeff ()));
@@ -132,8 +133,8 @@ TEST (Polygonizer, FillsABoxToItsEdgesWhenTheyAreSharp)
 
 TEST (Polygonizer, StaysClosedAtAnyResolution)
 {
-  const auto field = shapes::field (shapes::box (6000, { 1.0, 0.7, 0.5 }));
-  for (const int cells : { 7, 20, 64, 150 })
+  const auto field = shapes::field (shapes::box (6000, {1.0, 0.7, 0.5}));
+  for (const int cells : {7, 20, 64, 150})
   {
     const TriangleMesh mesh = meshOf (*field, resolution (cells));
     EXPECT_MESH_CONTRACT (mesh, true);
@@ -176,7 +177,7 @@ TEST (Polygonizer, IsoLevelOffsetsTheSurface)
 {
   PolygonizerOptions options;
   const auto field = shapes::field (shapes::sphere (4000));
-  for (const double iso : { -0.05, 0.05 })
+  for (const double iso : {-0.05, 0.05})
   {
     options.iso_level = iso;
     const TriangleMesh mesh = meshOf (*field, options);
@@ -222,12 +223,12 @@ TEST (Polygonizer, ClosesAGapThatTheFieldCloses)
 TEST (Polygonizer, KeepsSeparateObjectsAndDropsStrayPoints)
 {
   shapes::Samples scene = shapes::sphere (3000);
-  const shapes::Samples second = shapes::sphere (3000, 1.0, { 3.0, 0.0, 0.0 });
+  const shapes::Samples second = shapes::sphere (3000, 1.0, {3.0, 0.0, 0.0});
   for (std::size_t i = 0; i < second.size (); ++i)
     scene.add (second.positions[i], second.normals[i]);
-  scene.add ({ 0.0, 2.0, 0.0 }, Vector3d::UnitY ());
-  scene.add ({ 0.3, -1.7, 0.2 }, Vector3d::UnitX ());
-  scene.add ({ 1.5, 0.0, 0.8 }, Vector3d::UnitZ ());
+  scene.add ({0.0, 2.0, 0.0}, Vector3d::UnitY ());
+  scene.add ({0.3, -1.7, 0.2}, Vector3d::UnitX ());
+  scene.add ({1.5, 0.0, 0.8}, Vector3d::UnitZ ());
   const TriangleMesh mesh = meshOf (*shapes::field (scene));
   EXPECT_MESH_CONTRACT (mesh, true);
   EXPECT_EQ (erkpa::measureTopology (mesh).components, 2u);
@@ -260,14 +261,14 @@ TEST (Polygonizer, EvaluatesAboutAsOftenAsTheSurfaceIsLarge)
 TEST (Polygonizer, NamesTheSettingThatMakesNoSense)
 {
   const auto field = shapes::field (shapes::sphere (500));
-  std::vector<std::pair<PolygonizerOptions, Status>> bad (6, { PolygonizerOptions (), Status::INVALID_SETTING });
+  std::vector<std::pair<PolygonizerOptions, Status>> bad (6, {PolygonizerOptions (), Status::INVALID_SETTING});
   bad[0].first.voxel_size = -1.0;
   bad[1].first.resolution = -5;
   bad[2].first.iso_level = std::nan ("");
   bad[3].first.threads = -1;
-  bad[4] = { PolygonizerOptions (), Status::GRID_TOO_FINE };
+  bad[4] = {PolygonizerOptions (), Status::GRID_TOO_FINE};
   bad[4].first.voxel_size = 1e-9;
-  bad[5] = { PolygonizerOptions (), Status::NO_SURFACE };
+  bad[5] = {PolygonizerOptions (), Status::NO_SURFACE};
   bad[5].first.iso_level = 40.0;
   for (const auto &[options, status] : bad)
   {

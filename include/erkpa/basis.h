@@ -16,11 +16,11 @@ enum class Order
 };
 
 /** \brief The polynomial part of the reproduction vector R (eq. 15) and of its derivatives.
-  *
-  * Each basis is closed under translation and scaling, so it may be written in coordinates centred on the
-  * evaluation point and scaled by the support radius without changing the field. It writes its \a SIZE terms at
-  * \a u to \a R and their derivatives to the columns of \a G, and gives the degree of each term.
-  */
+ *
+ * Each basis is closed under translation and scaling, so it may be written in coordinates centred on the
+ * evaluation point and scaled by the support radius without changing the field. It writes its \a SIZE terms at
+ * \a u to \a R and their derivatives to the columns of \a G, and gives the degree of each term.
+ */
 struct ConstantBasis
 {
   static constexpr int SIZE = 1;

@@ -14,22 +14,22 @@ namespace erkpa
 {
 
 /** \brief Surface reconstruction with sharp edges via Enriched Reproducing Kernel Approximation, as a PCL stage.
-  *
-  * Takes the place of pcl::Poisson:
-  * \code
-  * erkpa::ERKPA<pcl::PointNormal> erkpa;
-  * erkpa.setInputCloud (cloud);
-  * erkpa.reconstruct (mesh);
-  * \endcode
-  * Every setting has a default that gives a good mesh. Sharp edges are made where planes given by addSharpEdge ()
-  * cut the surface. Points without usable normals get estimated ones. Nothing is thrown across reconstruct: on
-  * failure one PCL_ERROR names the input or setting, getStatus () tells the kind, and the output is empty.
-  *
-  * P. Reuter, P. Joyot, J. Trunzler, T. Boubekeur, C. Schlick: Reconstructing Implicit Surfaces with Sharp Edges via
-  * Enriched Reproducing Kernel Approximation, RR-1334-04, LaBRI, 2004.
-  *
-  * \tparam PointNT a point type with x, y, z; normals, colour and intensity are used where the type has them
-  */
+ *
+ * Takes the place of pcl::Poisson:
+ * \code
+ * erkpa::ERKPA<pcl::PointNormal> erkpa;
+ * erkpa.setInputCloud (cloud);
+ * erkpa.reconstruct (mesh);
+ * \endcode
+ * Every setting has a default that gives a good mesh. Sharp edges are made where planes given by addSharpEdge ()
+ * cut the surface. Points without usable normals get estimated ones. Nothing is thrown across reconstruct: on
+ * failure one PCL_ERROR names the input or setting, getStatus () tells the kind, and the output is empty.
+ *
+ * P. Reuter, P. Joyot, J. Trunzler, T. Boubekeur, C. Schlick: Reconstructing Implicit Surfaces with Sharp Edges via
+ * Enriched Reproducing Kernel Approximation, RR-1334-04, LaBRI, 2004.
+ *
+ * \tparam PointNT a point type with x, y, z; normals, colour and intensity are used where the type has them
+ */
 template <typename PointNT>
 class ERKPA : public pcl::SurfaceReconstruction<PointNT>
 {
@@ -52,8 +52,8 @@ public:
   }
 
   /** \brief Reconstruct the surface of the input cloud (its indices, where set).
-    * \param[out] output triangles over a cloud with x, y, z, unit normals, and the input's colour or intensity
-    */
+   * \param[out] output triangles over a cloud with x, y, z, unit normals, and the input's colour or intensity
+   */
   void
   reconstruct (pcl::PolygonMesh &output) override;
 
@@ -73,7 +73,7 @@ public:
   }
 
   /** \brief The neighbours of the support: ε(x) is the distance to the k-th nearest point. At least 4;
-    * 0 (default) chooses k from the noise of the points. */
+   * 0 (default) chooses k from the noise of the points. */
   void
   setKSearch (int k)
   {
@@ -202,9 +202,9 @@ public:
   }
 
   /** \brief Make the surface sharp where it crosses a plane.
-    * \param[in] coefficients a, b, c, d of a x + b y + c z + d = 0, of any scale: the plane that halves the edge
-    * \return false, with a PCL_ERROR, where there are not four finite values or a = b = c = 0
-    */
+   * \param[in] coefficients a, b, c, d of a x + b y + c z + d = 0, of any scale: the plane that halves the edge
+   * \return false, with a PCL_ERROR, where there are not four finite values or a = b = c = 0
+   */
   bool
   addSharpEdge (const pcl::ModelCoefficients &coefficients);
 
@@ -310,15 +310,15 @@ private:
 };
 
 /** \brief Reconstruct from a cloud whose fields are known only at run time (as loaded from a file).
-  *
-  * Uses x, y, z and, where present, normal_x/y/z, rgb or rgba, intensity.
-  * \param[in] cloud FLOAT32 x, y, z
-  * \param[in] options all settings; options.normals.view_point is where the sensor stood
-  * \param[out] mesh empty on failure
-  * \param[out] report what was done
-  * \param[out] field the field, where not null
-  * \param[in] progress may be empty
-  */
+ *
+ * Uses x, y, z and, where present, normal_x/y/z, rgb or rgba, intensity.
+ * \param[in] cloud FLOAT32 x, y, z
+ * \param[in] options all settings; options.normals.view_point is where the sensor stood
+ * \param[out] mesh empty on failure
+ * \param[out] report what was done
+ * \param[out] field the field, where not null
+ * \param[in] progress may be empty
+ */
 Outcome
 reconstruct (const pcl::PCLPointCloud2 &cloud, const Options &options, pcl::PolygonMesh &mesh, Report &report,
              ImplicitField::ConstPtr *field = nullptr, const ProgressCallback &progress = {});

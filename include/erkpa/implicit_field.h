@@ -23,8 +23,8 @@ enum class Constraint
 /** \brief Settings of the field. */
 struct FieldOptions
 {
-  Order order = Order::SPHERICAL;               ///< what the field reproduces exactly
-  Constraint constraint = Constraint::HERMITE;  ///< what the nodes ask of the field
+  Order order = Order::SPHERICAL;              ///< what the field reproduces exactly
+  Constraint constraint = Constraint::HERMITE; ///< what the nodes ask of the field
   int k = 0;           ///< support radius = distance to the k-th nearest node, at least 4; 0 = chosen from the noise
   double radius = 0.0; ///< constant support radius in the cloud's unit; 0 = use k
   std::vector<SharpSurface::ConstPtr> sharp_surfaces; ///< where the gradient of the field may jump
@@ -47,26 +47,26 @@ struct FieldSample
 /** \brief The share of one node in the field: f(x) = Σ φ_i λ_i + ψ_i·n_i (eq. 18, with the gradient terms). */
 struct ShapeFunction
 {
-  int node = 0;                                     ///< index into the field's points
-  double phi = 0.0;                                 ///< φ_i(x), weight of the node's value (eq. 19)
-  Eigen::Vector3d psi = Eigen::Vector3d::Zero ();   ///< ψ_i(x), weight of the node's normal, a length
+  int node = 0;                                   ///< index into the field's points
+  double phi = 0.0;                               ///< φ_i(x), weight of the node's value (eq. 19)
+  Eigen::Vector3d psi = Eigen::Vector3d::Zero (); ///< ψ_i(x), weight of the node's normal, a length
 };
 
 /** \brief The ERKPA field of oriented points: an implicit surface f = 0 with sharp edges where the user put them.
-  *
-  * Around x the nodes in the support of radius ε(x) are fitted, in values and gradients, by a combination of the
-  * reproduction vector R (eq. 15): polynomials, and for each sharp surface the enrichment θH(θ) (eq. 22). See
-  * moment_system.h for the system (eq. 16-17). All member functions are const and may run in several threads.
-  */
+ *
+ * Around x the nodes in the support of radius ε(x) are fitted, in values and gradients, by a combination of the
+ * reproduction vector R (eq. 15): polynomials, and for each sharp surface the enrichment θH(θ) (eq. 22). See
+ * moment_system.h for the system (eq. 16-17). All member functions are const and may run in several threads.
+ */
 class ImplicitField
 {
 public:
   using ConstPtr = std::shared_ptr<const ImplicitField>;
 
   /** \param[in] points the nodes, with unit normals
-    * \param[in] search finds the nodes; must know the same positions under the same indices
-    * \param[in] options settings that checkOptions accepts; k = 0 is settled here
-    */
+   * \param[in] search finds the nodes; must know the same positions under the same indices
+   * \param[in] options settings that checkOptions accepts; k = 0 is settled here
+   */
   ImplicitField (std::shared_ptr<const OrientedPoints> points, NeighborSearch::ConstPtr search,
                  const FieldOptions &options);
   ~ImplicitField ();
@@ -84,10 +84,10 @@ public:
   sample (const Eigen::Vector3d &x) const;
 
   /** \brief Many points at once; the same results as sample() one by one.
-    * \param[in] points positions in the input's frame
-    * \param[out] samples one per position
-    * \param[in] threads 0 = all processors
-    */
+   * \param[in] points positions in the input's frame
+   * \param[out] samples one per position
+   * \param[in] threads 0 = all processors
+   */
   void
   evaluate (const std::vector<Eigen::Vector3d> &points, std::vector<FieldSample> &samples, int threads = 0) const;
 

@@ -5,9 +5,9 @@ namespace erkpa
 {
 
 /** \brief The paper's kernel (section 4): w(t) = 1 - 10 t^3 + 15 t^4 - 6 t^5 on [0, 1], zero beyond; C2.
-  *
-  * t is the distance between a point and a node in units of the support radius.
-  */
+ *
+ * t is the distance between a point and a node in units of the support radius.
+ */
 struct PaperKernel
 {
   static double

@@ -13,25 +13,25 @@ namespace erkpa
 /** \brief Settings of the polygonizer. */
 struct PolygonizerOptions
 {
-  double voxel_size = 0.0;  ///< side of a grid cell in the cloud's unit; 0 = from resolution or spacing
-  int resolution = 0;       ///< cells along the longest side of the cloud; 0 = from the spacing of the points
-  double iso_level = 0.0;   ///< the surface is f = iso_level, in the cloud's unit; positive is outside
+  double voxel_size = 0.0;        ///< side of a grid cell in the cloud's unit; 0 = from resolution or spacing
+  int resolution = 0;             ///< cells along the longest side of the cloud; 0 = from the spacing of the points
+  double iso_level = 0.0;         ///< the surface is f = iso_level, in the cloud's unit; positive is outside
   double voxel_per_feature = 0.7; ///< the default voxel, in ImplicitField::featureSize ()
-  double reach = 0.9;       ///< no surface where fewer than a quarter of the support's nodes lie within this share
-                            ///< of its radius
-  double border_offset = 0.45; ///< an open surface ends where the nodes' centroid lies this share of the support
-                               ///< radius aside (about 0.27 on the border of evenly spread points)
+  double reach = 0.9;            ///< no surface where fewer than a quarter of the support's nodes lie within this share
+                                 ///< of its radius
+  double border_offset = 0.45;   ///< an open surface ends where the nodes' centroid lies this share of the support
+                                 ///< radius aside (about 0.27 on the border of evenly spread points)
   int min_component_points = 10; ///< a piece of surface that passes fewer points than this is dropped
-  int threads = 0;          ///< 0 = all processors
+  int threads = 0;               ///< 0 = all processors
 };
 
 /** \brief What the polygonizer did. */
 struct PolygonizerReport
 {
-  double voxel_size = 0.0;             ///< side of a grid cell in use
-  std::size_t evaluations = 0;         ///< evaluations of the field
-  std::size_t support_nodes = 0;       ///< nodes in the supports of all evaluations together
-  std::size_t dropped_components = 0;  ///< pieces no data supported
+  double voxel_size = 0.0;            ///< side of a grid cell in use
+  std::size_t evaluations = 0;        ///< evaluations of the field
+  std::size_t support_nodes = 0;      ///< nodes in the supports of all evaluations together
+  std::size_t dropped_components = 0; ///< pieces no data supported
 };
 
 /** \brief Called now and then with the fraction of the work done, 0 to 1, from the calling thread. */
@@ -42,16 +42,16 @@ double
 chooseVoxelSize (const ImplicitField &field, const PolygonizerOptions &options);
 
 /** \brief Marching cubes along the surface f = iso_level of a field.
-  *
-  * Starts at the cells of the nodes and follows the surface, so that cost goes with the area and no component
-  * appears that no node supports. Closed where the nodes close it; elsewhere the border follows the nodes'.
-  * The mesh is the same for any number of threads.
-  * \param[in] field the field
-  * \param[in] options settings; a value that makes no sense gives Status::INVALID_SETTING
-  * \param[out] mesh vertices in the input's frame; empty on error
-  * \param[out] report what was done
-  * \param[in] progress may be empty
-  */
+ *
+ * Starts at the cells of the nodes and follows the surface, so that cost goes with the area and no component
+ * appears that no node supports. Closed where the nodes close it; elsewhere the border follows the nodes'.
+ * The mesh is the same for any number of threads.
+ * \param[in] field the field
+ * \param[in] options settings; a value that makes no sense gives Status::INVALID_SETTING
+ * \param[out] mesh vertices in the input's frame; empty on error
+ * \param[out] report what was done
+ * \param[in] progress may be empty
+ */
 Outcome
 polygonize (const ImplicitField &field, const PolygonizerOptions &options, TriangleMesh &mesh,
             PolygonizerReport &report, const ProgressCallback &progress = {});

@@ -10,9 +10,9 @@ namespace erkpa
 {
 
 /** \brief Finds the nodes near a point. Queries are const and must be safe from several threads at once.
-  *
-  * Coordinates are those of OrientedPoints::positions (the local frame). The results' order is free.
-  */
+ *
+ * Coordinates are those of OrientedPoints::positions (the local frame). The results' order is free.
+ */
 class NeighborSearch
 {
 public:
@@ -36,8 +36,8 @@ public:
 };
 
 /** \brief A search over pcl::search::KdTree (KdTreeFLANN).
-  * \param[in] positions the nodes, in the local frame; copied
-  */
+ * \param[in] positions the nodes, in the local frame; copied
+ */
 NeighborSearch::ConstPtr
 makeKdTreeSearch (const std::vector<Eigen::Vector3f> &positions);
 

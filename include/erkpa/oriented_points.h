@@ -12,17 +12,17 @@ namespace erkpa
 {
 
 /** \brief The nodes of the field: distinct points of a surface with unit outward normals.
-  *
-  * Positions are relative to \a origin (the middle of the cloud), so that clouds far from the origin of their
-  * frame (UTM coordinates) keep their precision in float.
-  */
+ *
+ * Positions are relative to \a origin (the middle of the cloud), so that clouds far from the origin of their
+ * frame (UTM coordinates) keep their precision in float.
+ */
 struct OrientedPoints
 {
   Eigen::Vector3d origin = Eigen::Vector3d::Zero (); ///< position of the local frame in the input's frame
   std::vector<Eigen::Vector3f> positions;            ///< in the local frame, input's unit of length
   std::vector<Eigen::Vector3f> normals;              ///< unit length, pointing out of the solid; zero where unknown
-  int channels = 0;                                  ///< number of attributes of a point (3 for colour, 1 for intensity)
-  std::vector<float> attributes;                     ///< channels values per point, point after point
+  int channels = 0;              ///< number of attributes of a point (3 for colour, 1 for intensity)
+  std::vector<float> attributes; ///< channels values per point, point after point
 
   std::size_t
   size () const
@@ -34,33 +34,33 @@ struct OrientedPoints
 /** \brief A cloud as its owner stores it: strided floats, nothing copied. */
 struct PointView
 {
-  std::size_t size = 0;             ///< number of points
-  std::size_t stride = 0;           ///< bytes from one point to the next
-  const float *position = nullptr;  ///< x of the first point; y and z follow
-  const float *normal = nullptr;    ///< normal_x of the first point, or null where the cloud has none
-  int channels = 0;                 ///< attributes per point
-  std::vector<float> attributes;    ///< channels values per point, point after point
+  std::size_t size = 0;                      ///< number of points
+  std::size_t stride = 0;                    ///< bytes from one point to the next
+  const float *position = nullptr;           ///< x of the first point; y and z follow
+  const float *normal = nullptr;             ///< normal_x of the first point, or null where the cloud has none
+  int channels = 0;                          ///< attributes per point
+  std::vector<float> attributes;             ///< channels values per point, point after point
   const std::vector<int> *indices = nullptr; ///< points to use, or null for all
 };
 
 /** \brief What became of the points of a cloud. */
 struct PointCounts
 {
-  std::size_t read = 0;            ///< points looked at (the indices' number where indices are given)
-  std::size_t used = 0;            ///< nodes of the field
-  std::size_t not_finite = 0;      ///< dropped: a coordinate is NaN or infinite
-  std::size_t duplicate = 0;       ///< dropped: an earlier point has the same coordinates
-  std::size_t without_normal = 0;  ///< used, but their normal was missing, zero or NaN
+  std::size_t read = 0;           ///< points looked at (the indices' number where indices are given)
+  std::size_t used = 0;           ///< nodes of the field
+  std::size_t not_finite = 0;     ///< dropped: a coordinate is NaN or infinite
+  std::size_t duplicate = 0;      ///< dropped: an earlier point has the same coordinates
+  std::size_t without_normal = 0; ///< used, but their normal was missing, zero or NaN
 };
 
 /** \brief Gather the finite, distinct points of a cloud in a frame of their own.
-  *
-  * Normals are scaled to unit length; a missing one is left zero and counted. Of points with the same
-  * coordinates the first stays.
-  * \param[in] view the cloud; its indices must be within it (else Status::BAD_INDICES)
-  * \param[out] points the nodes, in the order of the cloud
-  * \param[out] counts what was kept and what was dropped
-  */
+ *
+ * Normals are scaled to unit length; a missing one is left zero and counted. Of points with the same
+ * coordinates the first stays.
+ * \param[in] view the cloud; its indices must be within it (else Status::BAD_INDICES)
+ * \param[out] points the nodes, in the order of the cloud
+ * \param[out] counts what was kept and what was dropped
+ */
 Outcome
 collectPoints (const PointView &view, OrientedPoints &points, PointCounts &counts);
 

@@ -25,16 +25,16 @@ struct Report
 {
   PointCounts points;
   Orientation orientation = Orientation::NONE;
-  int k = 0;                      ///< neighbours of the support in force; 0 with a constant radius
-  double radius = 0.0;            ///< constant support radius in force; 0 with k
-  double spacing = 0.0;           ///< typical distance between neighbouring points
+  int k = 0;            ///< neighbours of the support in force; 0 with a constant radius
+  double radius = 0.0;  ///< constant support radius in force; 0 with k
+  double spacing = 0.0; ///< typical distance between neighbouring points
   PolygonizerReport polygonizer;
   MeshTopology topology;
   std::size_t vertices = 0;
   std::size_t triangles = 0;
-  double seconds_points = 0.0;    ///< gathering the points and building the search tree
-  double seconds_normals = 0.0;   ///< estimating and orienting normals
-  double seconds_field = 0.0;     ///< settling the support
+  double seconds_points = 0.0;      ///< gathering the points and building the search tree
+  double seconds_normals = 0.0;     ///< estimating and orienting normals
+  double seconds_field = 0.0;       ///< settling the support
   double seconds_polygonizer = 0.0; ///< meshing
   double seconds_total = 0.0;
 
@@ -52,12 +52,12 @@ struct Report
 using SearchFactory = std::function<NeighborSearch::ConstPtr (const OrientedPoints &)>;
 
 /** \brief The first half of the way: cloud -> oriented points -> field.
-  * \param[in] view the cloud
-  * \param[in] options settings
-  * \param[in] make_search the search to use, or empty for a KdTreeFLANN
-  * \param[out] field the field; null on error
-  * \param[in,out] report filled in
-  */
+ * \param[in] view the cloud
+ * \param[in] options settings
+ * \param[in] make_search the search to use, or empty for a KdTreeFLANN
+ * \param[out] field the field; null on error
+ * \param[in,out] report filled in
+ */
 Outcome
 buildField (const PointView &view, const Options &options, const SearchFactory &make_search,
             ImplicitField::ConstPtr &field, Report &report);

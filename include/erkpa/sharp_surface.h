@@ -12,10 +12,10 @@ namespace erkpa
 {
 
 /** \brief A surface Γ = {θ = 0} that cuts a sharp edge: across it the gradient of the field may jump (eq. 21).
-  *
-  * θ must be close to a signed distance (|∇θ| about 1 near Γ): its value tells how far Γ is. Coordinates are
-  * those of the input cloud. Implementations are const and safe from several threads.
-  */
+ *
+ * θ must be close to a signed distance (|∇θ| about 1 near Γ): its value tells how far Γ is. Coordinates are
+ * those of the input cloud. Implementations are const and safe from several threads.
+ */
 class SharpSurface
 {
 public:
@@ -60,10 +60,10 @@ private:
 };
 
 /** \brief A plane from coefficients a, b, c, d of any scale.
-  * \param[in] coefficients four finite values, not all of a, b, c zero
-  * \param[out] surface the plane; untouched on error
-  * \return Status::INVALID_SETTING with the reason where the coefficients make no plane
-  */
+ * \param[in] coefficients four finite values, not all of a, b, c zero
+ * \param[out] surface the plane; untouched on error
+ * \return Status::INVALID_SETTING with the reason where the coefficients make no plane
+ */
 Outcome
 makeSharpPlane (const std::vector<float> &coefficients, SharpSurface::ConstPtr &surface);
 

@@ -13,11 +13,11 @@ namespace erkpa
 /** \brief Triangles over shared vertices, counter-clockwise seen from outside. */
 struct TriangleMesh
 {
-  std::vector<Eigen::Vector3f> vertices;      ///< positions
-  std::vector<Eigen::Vector3f> normals;       ///< unit normals ∇f/|∇f|, one per vertex
-  std::vector<std::array<int, 3>> triangles;  ///< indices of vertices
-  int channels = 0;                           ///< attributes per vertex
-  std::vector<float> attributes;              ///< channels values per vertex, blended from the nodes
+  std::vector<Eigen::Vector3f> vertices;     ///< positions
+  std::vector<Eigen::Vector3f> normals;      ///< unit normals ∇f/|∇f|, one per vertex
+  std::vector<std::array<int, 3>> triangles; ///< indices of vertices
+  int channels = 0;                          ///< attributes per vertex
+  std::vector<float> attributes;             ///< channels values per vertex, blended from the nodes
 
   void
   clear ()

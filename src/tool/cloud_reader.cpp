@@ -50,12 +50,8 @@ FileBytes
 readFile (const std::string &path)
 {
   const auto fail = [&path] ()
-  {
-    throw ToolError ("cannot read " + path + ": " + std::strerror (errno) +
-                     "; check the name and its permissions");
-  };
-  const std::unique_ptr<std::FILE, int (*) (std::FILE *)> file (std::fopen (path.c_str (), "rb"),
-                                                                std::fclose);
+  { throw ToolError ("cannot read " + path + ": " + std::strerror (errno) + "; check the name and its permissions"); };
+  const std::unique_ptr<std::FILE, int (*) (std::FILE *)> file (std::fopen (path.c_str (), "rb"), std::fclose);
   if (!file)
     fail ();
   std::error_code is_no_file; // a pipe, perhaps: its size is not known

@@ -65,9 +65,8 @@ describeField (const FieldOptions &field)
       ("k", word ("N"),
        withDefault ("the support of the field reaches to the N-th nearest point", field.k,
                     "chosen from the noise")
-           .c_str ()) //
-      ("radius", word ("R"),
-       withDefault ("constant support radius instead of k", field.radius, "use k").c_str ()) //
+           .c_str ())                                                                                              //
+      ("radius", word ("R"), withDefault ("constant support radius instead of k", field.radius, "use k").c_str ()) //
       ("order", word ("NAME"),
        withDefault (listNames (ORDERS) + ": what the field reproduces exactly", nameOf (ORDERS, field.order))
            .c_str ()) //
@@ -87,14 +86,12 @@ describeMeshing (const PolygonizerOptions &polygonizer)
   po::options_description description;
   description.add_options () //
       ("voxel", word ("S"),
-       withDefault ("side of a grid cell", polygonizer.voxel_size, "from the spacing of the points")
-           .c_str ()) //
+       withDefault ("side of a grid cell", polygonizer.voxel_size, "from the spacing of the points").c_str ()) //
       ("resolution", word ("N"),
        withDefault ("instead: grid cells along the longest side of the cloud", polygonizer.resolution,
                     "use voxel")
-           .c_str ()) //
-      ("iso", word ("V"),
-       withDefault ("the surface is f = V, positive outside", polygonizer.iso_level).c_str ()) //
+           .c_str ())                                                                                             //
+      ("iso", word ("V"), withDefault ("the surface is f = V, positive outside", polygonizer.iso_level).c_str ()) //
       ("viewpoint", word ("x,y,z"),
        "where the sensor stood, for the sign of estimated normals (default: as a .pcd or .ply file says; "
        "without, "
@@ -164,13 +161,11 @@ takeOptions (const po::variables_map &variables, CommandLine &line)
   ifGiven (variables, "k", [&] (const OptionText &o) { field.k = toCount (o, LEAST_K); });
   ifGiven (variables, "radius", [&] (const OptionText &o) { field.radius = toLength (o); });
   ifGiven (variables, "order", [&] (const OptionText &o) { field.order = toEnum (o, ORDERS); });
-  ifGiven (variables, "constraint",
-           [&] (const OptionText &o) { field.constraint = toEnum (o, CONSTRAINTS); });
+  ifGiven (variables, "constraint", [&] (const OptionText &o) { field.constraint = toEnum (o, CONSTRAINTS); });
   ifGiven (variables, "voxel", [&] (const OptionText &o) { polygonizer.voxel_size = toLength (o); });
   ifGiven (variables, "resolution", [&] (const OptionText &o) { polygonizer.resolution = toCount (o, 1); });
   ifGiven (variables, "iso", [&] (const OptionText &o) { polygonizer.iso_level = toNumber (o); });
-  ifGiven (variables, "threads",
-           [&] (const OptionText &o) { polygonizer.threads = normals.threads = toCount (o, 1); });
+  ifGiven (variables, "threads", [&] (const OptionText &o) { polygonizer.threads = normals.threads = toCount (o, 1); });
   ifGiven (variables, "viewpoint",
            [&] (const OptionText &o)
            {
@@ -192,8 +187,7 @@ void
 refuseBoth (const po::variables_map &variables, const char *one, const char *other)
 {
   if (variables.count (one) > 0 && variables.count (other) > 0)
-    throw ToolError (std::string ("options -") + one + " and -" + other +
-                     " exclude each other; give one of them");
+    throw ToolError (std::string ("options -") + one + " and -" + other + " exclude each other; give one of them");
 }
 
 void
@@ -205,16 +199,14 @@ takeFileNames (const std::vector<std::string> &names, CommandLine &line)
   line.input = names[0];
   line.output = names[1];
   if (!isReadable (line.input))
-    throw ToolError ("cannot read " + line.input + ": the format is unknown; use one of " +
-                     readableFormats ());
+    throw ToolError ("cannot read " + line.input + ": the format is unknown; use one of " + readableFormats ());
   if (!isWritable (line.output))
-    throw ToolError ("cannot write " + line.output + ": the format is unknown; use one of " +
-                     writableFormats ());
+    throw ToolError ("cannot write " + line.output + ": the format is unknown; use one of " + writableFormats ());
   if (!line.query.empty () && !isReadable (line.query))
     throw ToolError ("option -evaluate: cannot read " + line.query + ": the format is unknown; use one of " +
                      readableFormats ());
-  const bool repeats = line.report == line.output || line.values == line.output ||
-                       (!line.report.empty () && line.report == line.values);
+  const bool repeats =
+      line.report == line.output || line.values == line.output || (!line.report.empty () && line.report == line.values);
   if (repeats)
     throw ToolError ("OUTPUT, -report and -evaluate must not write the same file; give them different names");
 }
@@ -235,8 +227,7 @@ parseCommandLine (int argc, const char *const *argv)
   po::variables_map variables;
   try
   {
-    const po::parsed_options parsed =
-        po::command_line_parser (argc, argv).options (description).style (STYLE).run ();
+    const po::parsed_options parsed = po::command_line_parser (argc, argv).options (description).style (STYLE).run ();
     po::store (parsed, variables);
     line.help = variables.count ("help") > 0;
     line.version = variables.count ("version") > 0;

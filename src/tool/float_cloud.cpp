@@ -21,8 +21,7 @@ using Triple = std::array<FieldReader, 3>;
 bool
 allExist (const Triple &fields)
 {
-  return std::all_of (fields.begin (), fields.end (),
-                      [] (const FieldReader &field) { return field.exists (); });
+  return std::all_of (fields.begin (), fields.end (), [] (const FieldReader &field) { return field.exists (); });
 }
 
 Triple

@@ -38,8 +38,7 @@ decompressLzf (std::string_view bytes, std::vector<std::uint8_t> &output)
     const std::size_t distance = ((control & 31u) << 8) + next () + 1;
     if (distance > out || length > output.size () - out)
       return false;
-    for (const std::size_t end = out + length; out < end;
-         ++out) // byte by byte: source and target may overlap
+    for (const std::size_t end = out + length; out < end; ++out) // byte by byte: source and target may overlap
       output[out] = output[out - distance];
   }
   return out == output.size ();

@@ -35,8 +35,7 @@ runCommandLine (int argc, const char *const *argv)
 int
 fail (const char *message)
 {
-  pcl::console::print_color (stderr, pcl::console::TT_BRIGHT, pcl::console::TT_RED, "erkpa_reconstruct: %s",
-                             message);
+  pcl::console::print_color (stderr, pcl::console::TT_BRIGHT, pcl::console::TT_RED, "erkpa_reconstruct: %s", message);
   std::fputs ("\n", stderr);
   return EXIT_FAILURE;
 }

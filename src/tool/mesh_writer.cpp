@@ -22,8 +22,7 @@ struct Vertices
       : size (static_cast<std::size_t> (cloud.width) * cloud.height), position{FieldReader (cloud, {"x"}),
                                                                                FieldReader (cloud, {"y"}),
                                                                                FieldReader (cloud, {"z"})},
-        normal{FieldReader (cloud, {"normal_x"}), FieldReader (cloud, {"normal_y"}),
-               FieldReader (cloud, {"normal_z"})},
+        normal{FieldReader (cloud, {"normal_x"}), FieldReader (cloud, {"normal_y"}), FieldReader (cloud, {"normal_z"})},
         colour (cloud, {"rgb", "rgba"}), intensity (cloud, {"intensity"})
   {
   }

@@ -24,9 +24,8 @@ constexpr std::array<NamedValue<Order>, 4> ORDERS = {{{"constant", Order::CONSTA
 
 constexpr std::array<NamedValue<Constraint>, 1> CONSTRAINTS = {{{"hermite", Constraint::HERMITE}}};
 
-constexpr std::array<NamedValue<Orientation>, 3> ORIENTATIONS = {{{"none", Orientation::NONE},
-                                                                  {"view_point", Orientation::VIEW_POINT},
-                                                                  {"propagation", Orientation::PROPAGATION}}};
+constexpr std::array<NamedValue<Orientation>, 3> ORIENTATIONS = {
+    {{"none", Orientation::NONE}, {"view_point", Orientation::VIEW_POINT}, {"propagation", Orientation::PROPAGATION}}};
 
 template <typename EnumT, std::size_t N>
 std::string

@@ -45,11 +45,10 @@ public:
   {
     normal_of_.resize (positions_.size (), UNKNOWN);
     // without faces the first normal belongs to the first vertex, and so on
-    for (std::size_t i = 0; !has_corners_ && normals_.size () == positions_.size () && i < positions_.size ();
-         ++i)
+    for (std::size_t i = 0; !has_corners_ && normals_.size () == positions_.size () && i < positions_.size (); ++i)
       normal_of_[i] = i;
-    const bool has_normals = std::any_of (normal_of_.begin (), normal_of_.end (),
-                                          [this] (std::size_t n) { return n < normals_.size (); });
+    const bool has_normals =
+        std::any_of (normal_of_.begin (), normal_of_.end (), [this] (std::size_t n) { return n < normals_.size (); });
     const bool has_colours = colours_.size () == positions_.size ();
 
     pcl::PCLPointCloud2 cloud;
@@ -91,8 +90,7 @@ private:
   {
     if (tokens.size () < first + 3)
       scanner_.fail ("the row has " + std::to_string (tokens.size () - 1) + " numbers where 3 are expected");
-    return {scanner_.number (tokens[first]), scanner_.number (tokens[first + 1]),
-            scanner_.number (tokens[first + 2])};
+    return {scanner_.number (tokens[first]), scanner_.number (tokens[first + 1]), scanner_.number (tokens[first + 2])};
   }
 
   /** \brief v x y z, v x y z weight, or v x y z red green blue */

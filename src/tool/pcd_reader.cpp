@@ -112,8 +112,7 @@ layOut (const TextScanner &scanner, const PcdHeader &header, RawCloud &result)
   }
   constexpr std::size_t MOST = std::numeric_limits<std::uint32_t>::max ();
   const std::size_t points = header.points < MOST ? header.points : header.width * header.height;
-  if (header.width > MOST || header.height > MOST ||
-      (header.width > 0 && points != header.width * header.height))
+  if (header.width > MOST || header.height > MOST || (header.width > 0 && points != header.width * header.height))
     scanner.fail ("POINTS is not WIDTH times HEIGHT; write the file again");
   result.cloud.width = static_cast<std::uint32_t> (header.width > 0 ? header.width : points);
   result.cloud.height = static_cast<std::uint32_t> (header.width > 0 ? header.height : 1);
@@ -142,14 +141,12 @@ transpose (const std::vector<std::uint8_t> &columns, std::size_t points, pcl::PC
   {
     const std::size_t size = sizeOfType (field.datatype) * field.count;
     for (std::size_t i = 0; i < points; ++i, from += static_cast<std::ptrdiff_t> (size))
-      std::copy_n (from, size,
-                   cloud.data.begin () + static_cast<std::ptrdiff_t> (i * cloud.point_step + field.offset));
+      std::copy_n (from, size, cloud.data.begin () + static_cast<std::ptrdiff_t> (i * cloud.point_step + field.offset));
   }
 }
 
 void
-readCompressed (std::string_view body, const std::string &path, std::size_t points,
-                pcl::PCLPointCloud2 &cloud)
+readCompressed (std::string_view body, const std::string &path, std::size_t points, pcl::PCLPointCloud2 &cloud)
 {
   std::uint32_t sizes[2] = {0, 0}; // compressed, and what comes out
   requireBytes (sizeof (sizes), body, path);
@@ -181,8 +178,7 @@ readPcd (std::string_view bytes, const std::string &path)
   else if (header.data == "binary")
   {
     requireBytes (points * cloud.point_step, body, path);
-    cloud.data.assign (body.begin (),
-                       body.begin () + static_cast<std::ptrdiff_t> (points * cloud.point_step));
+    cloud.data.assign (body.begin (), body.begin () + static_cast<std::ptrdiff_t> (points * cloud.point_step));
   }
   else if (header.data == "binary_compressed")
     readCompressed (body, path, points, cloud);

@@ -84,8 +84,7 @@ readHeader (TextScanner &scanner)
     scanner.requireRow (tokens, "end_header");
     readEntry (scanner, tokens, header);
   }
-  if (header.format != "ascii" && header.format != "binary_little_endian" &&
-      header.format != "binary_big_endian")
+  if (header.format != "ascii" && header.format != "binary_little_endian" && header.format != "binary_big_endian")
     scanner.fail ("the format " + quoted (header.format) + " is unknown");
   return header;
 }
@@ -95,10 +94,8 @@ class PlyBody
 {
 public:
   PlyBody (TextScanner &scanner, std::string_view bytes, const std::string &path, const std::string &format)
-      : scanner_ (scanner), rest_ (bytes.substr (scanner.offset ())), path_ (path),
-        is_text_ (format == "ascii"),
-        is_swapped_ ((format == "binary_big_endian") !=
-                     (boost::endian::order::native == boost::endian::order::big))
+      : scanner_ (scanner), rest_ (bytes.substr (scanner.offset ())), path_ (path), is_text_ (format == "ascii"),
+        is_swapped_ ((format == "binary_big_endian") != (boost::endian::order::native == boost::endian::order::big))
   {
   }
 

@@ -98,8 +98,7 @@ columnsOf (const pcl::PCLPointCloud2 &cloud)
 }
 
 void
-appendRow (const TextScanner &scanner, const std::vector<std::string_view> &tokens,
-           pcl::PCLPointCloud2 &cloud)
+appendRow (const TextScanner &scanner, const std::vector<std::string_view> &tokens, pcl::PCLPointCloud2 &cloud)
 {
   auto token = tokens.begin ();
   for (const Field &field : cloud.fields)
@@ -116,8 +115,7 @@ void
 readRows (TextScanner &scanner, std::size_t count, pcl::PCLPointCloud2 &cloud)
 {
   const std::size_t columns = columnsOf (cloud);
-  const std::size_t possible =
-      scanner.remaining () / (2 * columns + 1) + 1; // whatever a broken header promises
+  const std::size_t possible = scanner.remaining () / (2 * columns + 1) + 1; // whatever a broken header promises
   cloud.data.reserve (std::min (count, possible) * cloud.point_step);
   std::vector<std::string_view> tokens;
   for (std::size_t i = 0; i < count; ++i)
@@ -148,8 +146,7 @@ double
 FieldReader::operator() (std::size_t point) const
 {
   const std::uint8_t *from = cloud_->data.data () + point * cloud_->point_step + offset_;
-  return withType (datatype_,
-                   [from] (auto zero) { return static_cast<double> (load<decltype (zero)> (from)); });
+  return withType (datatype_, [from] (auto zero) { return static_cast<double> (load<decltype (zero)> (from)); });
 }
 
 std::uint32_t

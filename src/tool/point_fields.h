@@ -18,8 +18,7 @@ namespace erkpa::tool
  * \param[in] datatype a pcl::PCLPointField::PointFieldTypes
  */
 void
-appendField (pcl::PCLPointCloud2 &cloud, const std::string &name, std::uint8_t datatype,
-             std::uint32_t count = 1);
+appendField (pcl::PCLPointCloud2 &cloud, const std::string &name, std::uint8_t datatype, std::uint32_t count = 1);
 
 /** \brief Bytes of a value of a type; 0 where there is no such type. */
 std::size_t
@@ -27,8 +26,7 @@ sizeOfType (std::uint8_t datatype);
 
 /** \brief The values of a row of text, stored as the fields of the cloud ask; one column per value. */
 void
-appendRow (const TextScanner &scanner, const std::vector<std::string_view> &tokens,
-           pcl::PCLPointCloud2 &cloud);
+appendRow (const TextScanner &scanner, const std::vector<std::string_view> &tokens, pcl::PCLPointCloud2 &cloud);
 
 /** \brief Number of columns a row of text has. */
 std::size_t

@@ -94,8 +94,7 @@ private:
     {
       const QuietLibrary quiet;
       ProgressLine progress;
-      const Outcome outcome =
-          erkpa::reconstruct (cloud, line_.options, mesh_, report_, &field_, progress.callback ());
+      const Outcome outcome = erkpa::reconstruct (cloud, line_.options, mesh_, report_, &field_, progress.callback ());
       if (!outcome.ok ())
         throw ToolError ("cannot reconstruct " + line_.input + ": " + outcome.message);
     }
@@ -109,14 +108,14 @@ private:
   {
     const PointCounts &points = report_.points;
     if (points.used < points.read)
-      print_info ("  left out %zu points that are not finite and %zu that repeat another\n",
-                  points.not_finite, points.duplicate);
+      print_info ("  left out %zu points that are not finite and %zu that repeat another\n", points.not_finite,
+                  points.duplicate);
     const bool is_view_point = report_.orientation == Orientation::VIEW_POINT;
     if (points.without_normal > 0)
       print_info ("  estimated %zu normals, oriented %s\n", points.without_normal,
                   is_view_point ? "towards the view point" : "from neighbour to neighbour");
-    print_info ("  %zu vertices, %zu pieces, %zu boundary edges\n", report_.vertices,
-                report_.topology.components, report_.topology.boundary_edges);
+    print_info ("  %zu vertices, %zu pieces, %zu boundary edges\n", report_.vertices, report_.topology.components,
+                report_.topology.boundary_edges);
     constexpr double TOLERABLE = 0.1; // of the spacing: beyond, the surface shows steps
     if (rounding_ > TOLERABLE * report_.spacing)
       print_warn ("%s: as floats the coordinates are off by up to %g; subtract an offset from them first\n",

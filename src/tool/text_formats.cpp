@@ -41,8 +41,7 @@ readTable (TextScanner &scanner, Tokens &tokens, pcl::PCLPointCloud2 &cloud)
   if (tokens.size () == 6)
     appendFields (cloud, {"nx", "ny", "nz"});
   const std::size_t columns = tokens.size ();
-  const std::size_t rows_to_come =
-      scanner.remaining () / scanner.offset () + 1; // if all are as long as the first
+  const std::size_t rows_to_come = scanner.remaining () / scanner.offset () + 1; // if all are as long as the first
   cloud.data.reserve ((rows_to_come + rows_to_come / 8) * cloud.point_step);
   std::size_t count = 0;
   do
@@ -122,8 +121,8 @@ layOutOff (const OffKeyword &keyword, const Tokens &row, pcl::PCLPointCloud2 &cl
   if (!keyword.has_colour)
     return;
   const bool has_point =
-      std::any_of (row.begin () + static_cast<std::ptrdiff_t> (std::min (columnsOf (cloud), row.size ())),
-                   row.end (), [] (std::string_view t) { return t.find ('.') != t.npos; });
+      std::any_of (row.begin () + static_cast<std::ptrdiff_t> (std::min (columnsOf (cloud), row.size ())), row.end (),
+                   [] (std::string_view t) { return t.find ('.') != t.npos; });
   for (const char *name : {"red", "green", "blue", "alpha"})
     if (columnsOf (cloud) < row.size () || *name != 'a')
       appendField (cloud, name, has_point ? Field::FLOAT64 : Field::UINT8);

@@ -67,8 +67,7 @@ TextScanner::number (std::string_view token) const
   const auto [end, error] = std::from_chars (digits.data (), digits.data () + digits.size (), value);
   if (error == std::errc::invalid_argument || end != digits.data () + digits.size ())
     fail (quoted (token) + " is not a number");
-  if (error ==
-      std::errc::result_out_of_range) // from_chars leaves the value alone; strtod gives 0 or infinity
+  if (error == std::errc::result_out_of_range) // from_chars leaves the value alone; strtod gives 0 or infinity
     value = std::strtod (std::string (digits).c_str (), nullptr);
   return value;
 }

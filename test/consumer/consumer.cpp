@@ -99,8 +99,7 @@ reconstructSphere (const char *type)
   erkpa::ImplicitField::ConstPtr field = erkpa->computeField ();
   require (field != nullptr, type, "no field");
   erkpa.reset (); // the field outlives what made it
-  const erkpa::FieldSample outside =
-      field->sample (CENTER.cast<double> () + 1.1 * RADIUS * Eigen::Vector3d::UnitX ());
+  const erkpa::FieldSample outside = field->sample (CENTER.cast<double> () + 1.1 * RADIUS * Eigen::Vector3d::UnitX ());
   require (outside.value > 0.0 && outside.gradient.x () > 0.5, type, "wrong field");
   std::printf ("consumer: %s: %zu points, %zu triangles\n", type, points.size (), polygons.size ());
 }

@@ -87,9 +87,8 @@ protected:
   Result
   run (const std::string &arguments, const std::string &before = "") const
   {
-    const std::string command = "cd " + directory_.string () + "; " + before +
-                                " exec " ERKPA_RECONSTRUCT_PATH " " + arguments + " >" + path (".out") +
-                                " 2>" + path (".err") + " </dev/null";
+    const std::string command = "cd " + directory_.string () + "; " + before + " exec " ERKPA_RECONSTRUCT_PATH " " +
+                                arguments + " >" + path (".out") + " 2>" + path (".err") + " </dev/null";
     const int status = std::system (("sh -c '" + command + "'").c_str ());
     Result result;
     result.status = WIFEXITED (status) ? WEXITSTATUS (status) : -1;

@@ -27,8 +27,8 @@ TEST_F (ErkpaReconstruct, PrintsEveryDefaultOnHelp)
     const Result result = run (option);
     EXPECT_EQ (result.status, 0) << option;
     EXPECT_EQ (result.err, "") << option;
-    for (const std::string name : {"-k", "-radius", "-order", "-constraint", "-sharp", "-voxel",
-                                   "-resolution", "-iso", "-viewpoint", "-threads", "-evaluate", "-report"})
+    for (const std::string name : {"-k", "-radius", "-order", "-constraint", "-sharp", "-voxel", "-resolution", "-iso",
+                                   "-viewpoint", "-threads", "-evaluate", "-report"})
     {
       const std::size_t at = result.out.find ("\n    " + name + " ");
       ASSERT_NE (at, std::string::npos) << name;
@@ -41,8 +41,7 @@ TEST_F (ErkpaReconstruct, TakesValuesThatBeginWithAMinus)
 {
   ASSERT_EQ (runCoarse ("sphere.xyz out.ply -iso -0.05 -viewpoint -1,-2,-3").status, 0);
   expectSphere ("out.ply", 0.95);
-  for (const std::string sharp :
-       {"-sharp -1,0,0,0.5", "-sharp=-1,0,0,.5", "--sharp -1,0,0,0.5", "-sharp -2,0,0,1"})
+  for (const std::string sharp : {"-sharp -1,0,0,0.5", "-sharp=-1,0,0,.5", "--sharp -1,0,0,0.5", "-sharp -2,0,0,1"})
   {
     ASSERT_EQ (runCoarse ("sphere.xyz " + sharp + " out_sharp.ply -sharp 0,0,1,0").status, 0) << sharp;
     expectSphere ("out_sharp.ply");
@@ -121,8 +120,7 @@ TEST_F (ErkpaReconstruct, TakesTheViewPointFromThePcdUnlessItIsGiven)
 {
   pcl::PointCloud<pcl::PointXYZ> plane;
   for (int i = 0; i < 900; ++i)
-    plane.push_back (
-        pcl::PointXYZ (0.1f * static_cast<float> (i % 30), 0.1f * static_cast<float> (i / 30), 0.0f));
+    plane.push_back (pcl::PointXYZ (0.1f * static_cast<float> (i % 30), 0.1f * static_cast<float> (i / 30), 0.0f));
   plane.sensor_origin_ = Eigen::Vector4f (1.5f, 1.5f, -9.0f, 0.0f);
   pcl::io::savePCDFileBinary (path ("plane.pcd"), plane);
   ASSERT_EQ (run ("plane.pcd below.ply").status, 0);

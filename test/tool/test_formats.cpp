@@ -41,10 +41,9 @@ TEST_F (ErkpaReconstruct, ReadsEveryKindOfPly)
   pcl::io::savePLYFileBinary (path ("binary.ply"), cloud);
   expectReads ("binary.ply");
 
-  std::string doubles =
-      "ply\nformat binary_big_endian 1.0\ncomment -\nelement skipped 1\nproperty uchar a\n"
-      "element vertex 3000\nproperty double x\nproperty double y\nproperty double z\n"
-      "property uint8 class\nelement face 1\nproperty list uchar int vertex_indices\nend_header\n?";
+  std::string doubles = "ply\nformat binary_big_endian 1.0\ncomment -\nelement skipped 1\nproperty uchar a\n"
+                        "element vertex 3000\nproperty double x\nproperty double y\nproperty double z\n"
+                        "property uint8 class\nelement face 1\nproperty list uchar int vertex_indices\nend_header\n?";
   for (const Eigen::Vector3d &p : fibonacciSphere ())
   {
     for (double coordinate : p)
@@ -78,8 +77,7 @@ TEST_F (ErkpaReconstruct, TakesTheNormalsOfAnObjFromItsFaces)
   std::string text = sphereRows (false, "v ");
   const auto points = fibonacciSphere ();
   for (auto p = points.rbegin (); p != points.rend (); ++p) // in another order than the vertices
-    text += "vn " + std::to_string (p->x ()) + " " + std::to_string (p->y ()) + " " +
-            std::to_string (p->z ()) + "\n";
+    text += "vn " + std::to_string (p->x ()) + " " + std::to_string (p->y ()) + " " + std::to_string (p->z ()) + "\n";
   for (int i = 1; i <= 3000; ++i)
     text += "f " + std::to_string (i) + "//" + std::to_string (3001 - i) + " 1//3000 -3000/7/-1\n";
   write ("a.obj", text);

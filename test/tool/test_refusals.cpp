@@ -53,8 +53,7 @@ TEST_F (ErkpaReconstruct, NamesFileAndLineOfBrokenText)
   const std::string pcd = "FIELDS x y z\nSIZE 4 4 4\nTYPE F F F\nWIDTH 4\nHEIGHT 1\nPOINTS 4\nDATA ascii\n";
   const std::string ply = "ply\nformat ascii 1.0\nelement vertex 4\nproperty float x\nproperty float y\n"
                           "property float z\nend_header\n";
-  const auto expectBroken =
-      [this] (const std::string &name, const std::string &bytes, const std::string &words)
+  const auto expectBroken = [this] (const std::string &name, const std::string &bytes, const std::string &words)
   {
     write (name, bytes);
     expectRefuses (name + " out.ply", name + words);
@@ -88,21 +87,15 @@ TEST_F (ErkpaReconstruct, NamesTheFileWithoutPointsOrBytes)
       {"empty.off", "OFF\n0 0 0\n"},
       {"empty.obj", "o nothing\n"},
       {"empty.pcd", "FIELDS x y z\nSIZE 4 4 4\nTYPE F F F\nWIDTH 0\nHEIGHT 1\nPOINTS 0\nDATA binary\n"},
-      {"empty.ply",
-       "ply\nformat ascii 1.0\nelement vertex 0\nproperty float x\nproperty float y\nproperty float z\n"
-       "end_header\n"},
-      {"flat.ply",
-       "ply\nformat ascii 1.0\nelement vertex 1\nproperty float x\nproperty float y\nend_header\n0 0\n"},
-      {"early.pcd",
-       "FIELDS x y z\nSIZE 4 4 4\nTYPE F F F\nWIDTH 2\nHEIGHT 1\nPOINTS 2\nDATA binary\n012345678901"},
-      {"endless.pcd",
-       "FIELDS x y z\nSIZE 4 4 4\nTYPE F F F\nWIDTH 4000000000\nHEIGHT 4000000000\nDATA binary\n0123"},
-      {"damaged.pcd",
-       "FIELDS x y z\nSIZE 4 4 4\nTYPE F F F\nWIDTH 1\nHEIGHT 1\nPOINTS 1\nDATA binary_compressed\n" +
-           std::string ("\3\0\0\0\14\0\0\0\377\377\377", 11)},
-      {"early.ply",
-       "ply\nformat binary_little_endian 1.0\nelement vertex 2\nproperty float x\nproperty float y\n"
-       "property float z\nend_header\n012345678901"}};
+      {"empty.ply", "ply\nformat ascii 1.0\nelement vertex 0\nproperty float x\nproperty float y\nproperty float z\n"
+                    "end_header\n"},
+      {"flat.ply", "ply\nformat ascii 1.0\nelement vertex 1\nproperty float x\nproperty float y\nend_header\n0 0\n"},
+      {"early.pcd", "FIELDS x y z\nSIZE 4 4 4\nTYPE F F F\nWIDTH 2\nHEIGHT 1\nPOINTS 2\nDATA binary\n012345678901"},
+      {"endless.pcd", "FIELDS x y z\nSIZE 4 4 4\nTYPE F F F\nWIDTH 4000000000\nHEIGHT 4000000000\nDATA binary\n0123"},
+      {"damaged.pcd", "FIELDS x y z\nSIZE 4 4 4\nTYPE F F F\nWIDTH 1\nHEIGHT 1\nPOINTS 1\nDATA binary_compressed\n" +
+                          std::string ("\3\0\0\0\14\0\0\0\377\377\377", 11)},
+      {"early.ply", "ply\nformat binary_little_endian 1.0\nelement vertex 2\nproperty float x\nproperty float y\n"
+                    "property float z\nend_header\n012345678901"}};
   for (const auto &[name, bytes] : broken)
   {
     write (name, bytes);

@@ -64,7 +64,7 @@ viewCloud (const pcl::PointCloud<PointT> &cloud)
     view.channels = 3;
     view.attributes.reserve (3 * cloud.size ());
     for (const PointT &p : cloud.points)
-      view.attributes.insert (view.attributes.end (), { float (p.r), float (p.g), float (p.b) });
+      view.attributes.insert (view.attributes.end (), {float (p.r), float (p.g), float (p.b)});
   }
   else if constexpr (kindOfAttributes<PointT> () == Attributes::INTENSITY)
   {
@@ -175,8 +175,7 @@ toPolygonMeshOf (const TriangleMesh &mesh, const pcl::PCLHeader &header, pcl::Po
 
 /** \brief The mesh as PCL hands it on: normals always, colour or intensity where the input had them. */
 inline void
-toPolygonMesh (const TriangleMesh &mesh, Attributes attributes, const pcl::PCLHeader &header,
-               pcl::PolygonMesh &output)
+toPolygonMesh (const TriangleMesh &mesh, Attributes attributes, const pcl::PCLHeader &header, pcl::PolygonMesh &output)
 {
   switch (attributes)
   {

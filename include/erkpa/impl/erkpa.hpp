@@ -25,11 +25,11 @@ ERKPA<PointNT>::guarded (StepT step)
   }
   catch (const std::bad_alloc &)
   {
-    outcome_ = { Status::INTERNAL_ERROR, "out of memory: use a larger voxel size or fewer points" };
+    outcome_ = {Status::INTERNAL_ERROR, "out of memory: use a larger voxel size or fewer points"};
   }
   catch (const std::exception &error)
   {
-    outcome_ = { Status::INTERNAL_ERROR, error.what () };
+    outcome_ = {Status::INTERNAL_ERROR, error.what ()};
   }
   if (!outcome_.ok ())
   {
@@ -55,7 +55,7 @@ ERKPA<PointNT>::makeField ()
   field_.reset ();
   report_ = Report ();
   if (!input_)
-    return { Status::NO_INPUT, "there is no input cloud: call setInputCloud () first" };
+    return {Status::NO_INPUT, "there is no input cloud: call setInputCloud () first"};
   if (use_sensor_origin_)
   {
     options_.normals.view_point = input_->sensor_origin_.template head<3> ().template cast<double> ();
@@ -74,12 +74,14 @@ template <typename PointNT>
 bool
 ERKPA<PointNT>::makeMesh (TriangleMesh &mesh)
 {
-  return guarded ([&] {
-    Outcome outcome = makeField ();
-    if (outcome.ok ())
-      outcome = buildMesh (*field_, options_, mesh, report_, progress_);
-    return outcome;
-  });
+  return guarded (
+      [&]
+      {
+        Outcome outcome = makeField ();
+        if (outcome.ok ())
+          outcome = buildMesh (*field_, options_, mesh, report_, progress_);
+        return outcome;
+      });
 }
 
 template <typename PointNT>
