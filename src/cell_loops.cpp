@@ -30,11 +30,11 @@ struct CellTables
       for (int i = 0; i < 4; ++i)
       {
         const int b = 1 << ((axis + 1) % 3), c = 1 << ((axis + 2) % 3);
-        edges[Index (4 * axis + i)] = {(i & 1 ? b : 0) | (i & 2 ? c : 0), axis};
+        edges[4 * Index (axis) + Index (i)] = {(i & 1 ? b : 0) | (i & 2 ? c : 0), axis};
       }
     for (int axis = 0; axis < 3; ++axis)
       for (int high = 0; high < 2; ++high)
-        faces[Index (2 * axis + high)] = makeFace (axis, high != 0);
+        faces[2 * Index (axis) + Index (high)] = makeFace (axis, high != 0);
     for (const Face &face : faces)
       for (const int e : face.edges)
         for (const int other : face.edges)

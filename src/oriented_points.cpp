@@ -113,7 +113,7 @@ collectPoints (const PointView &view, OrientedPoints &points, PointCounts &count
   points = OrientedPoints ();
   counts = PointCounts ();
   std::vector<int> chosen;
-  const Outcome outcome = chosenPoints (view, chosen);
+  Outcome outcome = chosenPoints (view, chosen);
   if (!outcome.ok ())
     return outcome;
   counts.read = chosen.size ();
@@ -132,7 +132,9 @@ collectPoints (const PointView &view, OrientedPoints &points, PointCounts &count
     points.normals.push_back (normalOf (view, i));
     counts.without_normal += points.normals.back ().isZero (0.0f) ? 1 : 0;
     for (int c = 0; c < view.channels; ++c)
-      points.attributes.push_back (view.attributes[static_cast<std::size_t> (i * view.channels + c)]);
+      points.attributes.push_back (
+          view.attributes[static_cast<std::size_t> (i) * static_cast<std::size_t> (view.channels) +
+                          static_cast<std::size_t> (c)]);
   }
   return {};
 }

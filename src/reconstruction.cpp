@@ -39,7 +39,7 @@ collect (const PointView &view, const SearchFactory &make_search, OrientedPoints
          NeighborSearch::ConstPtr &search, Report &report)
 {
   const StageClock clock (report.seconds_points);
-  const Outcome outcome = collectPoints (view, points, report.points);
+  Outcome outcome = collectPoints (view, points, report.points);
   if (!outcome.ok ())
     return outcome;
   if (points.size () < Support::MIN_NODES)
@@ -88,7 +88,7 @@ buildMesh (const ImplicitField &field, const Options &options, TriangleMesh &mes
 {
   const StageClock total (report.seconds_total);
   const StageClock clock (report.seconds_polygonizer);
-  const Outcome outcome = polygonize (field, options.polygonizer, mesh, report.polygonizer, progress);
+  Outcome outcome = polygonize (field, options.polygonizer, mesh, report.polygonizer, progress);
   report.topology = measureTopology (mesh);
   report.vertices = mesh.vertices.size ();
   report.triangles = mesh.triangles.size ();

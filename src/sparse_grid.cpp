@@ -53,7 +53,7 @@ std::uint64_t
 SparseGrid::keyOf (const GridPoint &point)
 {
   // Arithmetic shifts round towards minus infinity, so that blocks tile negative coordinates too.
-  const auto part = [] (int v) { return static_cast<std::uint64_t> ((v >> 2) + (1 << 20)); };
+  const auto part = [] (int v) { return static_cast<std::uint64_t> (v >> 2) + (std::uint64_t (1) << 20); };
   return part (point.x) | (part (point.y) << 21) | (part (point.z) << 42);
 }
 

@@ -15,7 +15,18 @@ using erkpa::Order;
 namespace
 {
 
-std::mt19937 random_engine (11);
+std::mt19937 random_engine;
+
+/** \brief Each test starts with the same random numbers, whichever run before it. */
+class Field : public testing::Test
+{
+protected:
+  void
+  SetUp () override
+  {
+    random_engine.seed (11);
+  }
+};
 
 Vector3d
 randomPoint (double size)
@@ -97,7 +108,7 @@ const std::vector<std::pair<std::string, Function>> MONOMIALS = {
 
 } // namespace
 
-TEST (Field, ReproducesEveryFunctionOfItsBasis)
+TEST_F (Field, ReproducesEveryFunctionOfItsBasis)
 {
   const shapes::Samples nodes = nodesInCube (2000);
   const std::pair<Order, std::size_t> sizes[] = {{Order::LINEAR, 4}, {Order::SPHERICAL, 5}, {Order::QUADRATIC, 11}};
@@ -110,7 +121,7 @@ TEST (Field, ReproducesEveryFunctionOfItsBasis)
     }
 }
 
-TEST (Field, ConstantOrderIsAPartitionOfUnityOverTheTangentPlanesOfTheNodes)
+TEST_F (Field, ConstantOrderIsAPartitionOfUnityOverTheTangentPlanesOfTheNodes)
 {
   const auto field = shapes::field (nodesInCube (2000), optionsOf (Order::CONSTANT, 30));
   for (int i = 0; i < 20; ++i)
@@ -130,7 +141,7 @@ TEST (Field, ConstantOrderIsAPartitionOfUnityOverTheTangentPlanesOfTheNodes)
   }
 }
 
-TEST (Field, ShapeFunctionsSumToOneInEveryOrder)
+TEST_F (Field, ShapeFunctionsSumToOneInEveryOrder)
 {
   for (const Order order : {Order::CONSTANT, Order::LINEAR, Order::SPHERICAL, Order::QUADRATIC})
   {
@@ -139,7 +150,7 @@ TEST (Field, ShapeFunctionsSumToOneInEveryOrder)
   }
 }
 
-TEST (Field, ShapeFunctionsGiveTheFieldItself)
+TEST_F (Field, ShapeFunctionsGiveTheFieldItself)
 {
   FieldOptions options = optionsOf (Order::SPHERICAL, 30);
   options.sharp_surfaces.push_back (shapes::plane ({1.0, 0.3, -0.2, 0.05}));
@@ -154,7 +165,7 @@ TEST (Field, ShapeFunctionsGiveTheFieldItself)
   }
 }
 
-TEST (Field, ReproducesTheMaximumAndMinimumOfTwoPlanesAcrossTheirBisector)
+TEST_F (Field, ReproducesTheMaximumAndMinimumOfTwoPlanesAcrossTheirBisector)
 {
   const Vector3d a (1.0, 0.2, 0.1), b (-0.3, 0.9, 0.2);
   const Vector3d between = b - a;
@@ -167,7 +178,7 @@ TEST (Field, ReproducesTheMaximumAndMinimumOfTwoPlanesAcrossTheirBisector)
       *field, [&] (const Vector3d &p) { return std::min (a.dot (p), b.dot (p)); }, "min", 1e-5);
 }
 
-TEST (Field, ReproducesCornersOfThreePlanesWhateverTheSignAndScaleOfTheBisectors)
+TEST_F (Field, ReproducesCornersOfThreePlanesWhateverTheSignAndScaleOfTheBisectors)
 {
   const Vector3d a (1.0, 0.2, 0.1), b (-0.3, 0.9, 0.2), c (0.1, -0.4, 0.8);
   const Function convex = [&] (const Vector3d &p) { return std::max ({a.dot (p), b.dot (p), c.dot (p)}); };
@@ -194,7 +205,7 @@ TEST (Field, ReproducesCornersOfThreePlanesWhateverTheSignAndScaleOfTheBisectors
   }
 }
 
-TEST (Field, IsExactOnPlanesAndSpheres)
+TEST_F (Field, IsExactOnPlanesAndSpheres)
 {
   const auto flat = shapes::field (shapes::sheet (40, [] (double, double) { return 0.0; }));
   const auto round = shapes::field (shapes::sphere (3000, 2.0));
@@ -209,7 +220,7 @@ TEST (Field, IsExactOnPlanesAndSpheres)
   }
 }
 
-TEST (Field, GradientAgreesWithFiniteDifferences)
+TEST_F (Field, GradientAgreesWithFiniteDifferences)
 {
   const shapes::Samples box = shapes::box (4000, {1.0, 0.7, 0.5});
   for (const Order order : {Order::CONSTANT, Order::LINEAR, Order::SPHERICAL, Order::QUADRATIC})
@@ -240,7 +251,7 @@ TEST (Field, GradientAgreesWithFiniteDifferences)
       }
 }
 
-TEST (Field, IsTheSameOneByOneAndInBatchesAndInAnyNumberOfThreads)
+TEST_F (Field, IsTheSameOneByOneAndInBatchesAndInAnyNumberOfThreads)
 {
   FieldOptions options;
   for (const Eigen::Vector4d &bisector : shapes::boxBisectors ({1.0, 0.7, 0.5}))
@@ -265,7 +276,7 @@ TEST (Field, IsTheSameOneByOneAndInBatchesAndInAnyNumberOfThreads)
   EXPECT_FALSE (one.back ().isDefined ());
 }
 
-TEST (Field, FollowsRotationTranslationAndScaleOfThePoints)
+TEST_F (Field, FollowsRotationTranslationAndScaleOfThePoints)
 {
   const shapes::Samples torus = shapes::torus (3000, 1.0, 0.4);
   const Eigen::Matrix3d rotation = Eigen::AngleAxisd (0.8, Vector3d (1.0, 2.0, -1.0).normalized ()).matrix ();
@@ -280,7 +291,7 @@ TEST (Field, FollowsRotationTranslationAndScaleOfThePoints)
   }
 }
 
-TEST (Field, IsZeroOnTheEdgesAndCornersOfABoxWithSharpPlanes)
+TEST_F (Field, IsZeroOnTheEdgesAndCornersOfABoxWithSharpPlanes)
 {
   const Vector3d half (1.0, 0.7, 0.5);
   const Eigen::Matrix3d attitude = Eigen::AngleAxisd (1.1, Vector3d (0.3, -0.7, 0.5).normalized ()).matrix ();
@@ -310,7 +321,7 @@ TEST (Field, IsZeroOnTheEdgesAndCornersOfABoxWithSharpPlanes)
     EXPECT_NEAR (sample.value, 0.0, 1e-4);
 }
 
-TEST (Field, SharpPlaneDropsOutWithoutAJumpWhereItsSupportLiesOnOneSide)
+TEST_F (Field, SharpPlaneDropsOutWithoutAJumpWhereItsSupportLiesOnOneSide)
 {
   // A roof along y = 0, and a path that leaves its ridge until all nodes in reach lie on one slope.
   const auto roof = [] (double, double y) { return -0.6 * std::abs (y); };
@@ -329,7 +340,7 @@ TEST (Field, SharpPlaneDropsOutWithoutAJumpWhereItsSupportLiesOnOneSide)
   }
 }
 
-TEST (Field, IsUndefinedWhereTooFewNodesAreInReach)
+TEST_F (Field, IsUndefinedWhereTooFewNodesAreInReach)
 {
   const auto field = shapes::field (shapes::sphere (500), optionsOf (Order::SPHERICAL, 0, 0.2));
   EXPECT_TRUE (field->sample ({1.0, 0.0, 0.0}).isDefined ());
@@ -338,7 +349,7 @@ TEST (Field, IsUndefinedWhereTooFewNodesAreInReach)
   EXPECT_TRUE (field->shapeFunctions ({9.0, 0.0, 0.0}).empty ());
 }
 
-TEST (Field, StaysDefinedAndFiniteFarFromThePointsWithANeighbourSupport)
+TEST_F (Field, StaysDefinedAndFiniteFarFromThePointsWithANeighbourSupport)
 {
   const auto field = shapes::field (shapes::sphere (500));
   for (const double far : {1e1, 1e3, 1e6})
@@ -346,7 +357,7 @@ TEST (Field, StaysDefinedAndFiniteFarFromThePointsWithANeighbourSupport)
   EXPECT_FALSE (field->sample ({1e30, 0.0, 0.0}).isDefined ());
 }
 
-TEST (Field, NamesTheSettingThatMakesNoSense)
+TEST_F (Field, NamesTheSettingThatMakesNoSense)
 {
   for (const auto &options : {optionsOf (Order::LINEAR, 3), optionsOf (Order::LINEAR, -1),
                               optionsOf (Order::LINEAR, 0, -0.1), optionsOf (Order::LINEAR, 0, std::nan (""))})
@@ -358,7 +369,7 @@ TEST (Field, NamesTheSettingThatMakesNoSense)
   EXPECT_TRUE (ImplicitField::checkOptions ({}).ok ());
 }
 
-TEST (Field, SupportGrowsWithTheNoiseOfThePoints)
+TEST_F (Field, SupportGrowsWithTheNoiseOfThePoints)
 {
   const auto flat = [] (double, double) { return 0.0; };
   shapes::Samples noisy = shapes::sheet (60, flat);

@@ -64,7 +64,7 @@ ERKPA<PointNT>::makeField ()
   SearchFactory make_search;
   if (tree_)
     make_search = [this] (const OrientedPoints &points) { return makePclSearch<PointNT> (tree_, points); };
-  const Outcome outcome = buildField (viewOfInput (), options_, make_search, field_, report_);
+  Outcome outcome = buildField (viewOfInput (), options_, make_search, field_, report_);
   if (outcome.ok ())
     reportPoints (getClassName (), report_, options_);
   return outcome;
@@ -124,7 +124,7 @@ bool
 ERKPA<PointNT>::addSharpEdge (const pcl::ModelCoefficients &coefficients)
 {
   SharpSurface::ConstPtr surface;
-  const Outcome outcome = makeSharpPlane (coefficients.values, surface);
+  Outcome outcome = makeSharpPlane (coefficients.values, surface);
   if (!outcome.ok ())
   {
     PCL_ERROR ("[%s::addSharpEdge] %s.\n", getClassName ().c_str (), outcome.message.c_str ());
