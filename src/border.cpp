@@ -134,4 +134,50 @@ trimBorder (double limit, std::vector<Triangle> &triangles, SurfaceVertices &ver
   triangles.swap (kept);
 }
 
+void
+splitFans (std::vector<Triangle> &triangles, SurfaceVertices &vertices)
+{
+  std::vector<char> on_border (vertices.positions.size (), 0);
+  for (const MeshEdge &edge : boundaryEdges (triangles))
+    on_border[static_cast<std::size_t> (edge.low)] = on_border[static_cast<std::size_t> (edge.high)] = 1;
+  const auto is_on_border = [&on_border] (int v) { return on_border[static_cast<std::size_t> (v)] != 0; };
+  std::vector<Triangle *> touching;
+  for (Triangle &t : triangles)
+    if (std::any_of (t.begin (), t.end (), is_on_border))
+      touching.push_back (&t);
+
+  // Corners of triangles that share an edge belong to one fan at either end of it.
+  DisjointSets fans (3 * touching.size ());
+  std::unordered_map<std::uint64_t, int> corner_of_edge; // by the edge's direction, the corner at its start
+  const auto key = [] (int start, int end)
+  { return static_cast<std::uint64_t> (start) << 32 | static_cast<std::uint32_t> (end); };
+  for (std::size_t corner = 0; corner < 3 * touching.size (); ++corner)
+  {
+    const Triangle &t = *touching[corner / 3];
+    const int start = t[corner % 3], end = t[(corner + 1) % 3], here = static_cast<int> (corner);
+    const auto following = [] (int c) { return c % 3 == 2 ? c - 2 : c + 1; };
+    corner_of_edge.emplace (key (start, end), here);
+    const auto twin = corner_of_edge.find (key (end, start));
+    if (twin == corner_of_edge.end ())
+      continue;
+    fans.unite (following (here), twin->second);
+    fans.unite (here, following (twin->second));
+  }
+  std::unordered_map<int, int> first_fans, copies; // vertex -> the fan that keeps it, other fan -> its own vertex
+  for (std::size_t corner = 0; corner < 3 * touching.size (); ++corner)
+  {
+    int &vertex = (*touching[corner / 3])[corner % 3];
+    const int fan = fans.find (static_cast<int> (corner));
+    if (!is_on_border (vertex) || first_fans.try_emplace (vertex, fan).first->second == fan)
+      continue;
+    const auto [copy, is_new] = copies.try_emplace (fan, static_cast<int> (vertices.positions.size ()));
+    if (is_new)
+    {
+      vertices.append (static_cast<std::size_t> (vertex));
+      on_border.push_back (0); // done
+    }
+    vertex = copy->second;
+  }
+}
+
 } // namespace erkpa

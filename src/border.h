@@ -21,4 +21,8 @@ namespace erkpa
 void
 trimBorder (double limit, std::vector<std::array<int, 3>> &triangles, SurfaceVertices &vertices);
 
+/** \brief Give each fan of triangles around a vertex a vertex of its own, so that borders do not touch in a point. */
+void
+splitFans (std::vector<std::array<int, 3>> &triangles, SurfaceVertices &vertices);
+
 } // namespace erkpa

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "enrichment.h"
 
+#include <Eigen/LU>
 #include <Eigen/SVD>
 
 #include <algorithm>
@@ -20,8 +21,10 @@ pencilOf (const std::array<const SharpPlane *, 3> &planes, double tolerance, Pen
   const Eigen::Vector3d zero = Eigen::Vector3d::Zero ();
   for (int i = 0; i < 3; ++i)
     normals.col (i) = planes[static_cast<std::size_t> (i)]->thetaGradient (zero);
-  const Eigen::JacobiSVD<Eigen::Matrix3d> svd (normals, Eigen::ComputeFullV);
   constexpr double PARALLEL = 0.05; // about 3 degrees: planes found by segmentation are not exact
+  if (std::abs (normals.determinant ()) > 1.5 * PARALLEL)
+    return false; // the smallest singular value is larger than PARALLEL: the other two make at most 1.5
+  const Eigen::JacobiSVD<Eigen::Matrix3d> svd (normals, Eigen::ComputeFullV);
   if (svd.singularValues ()[2] > PARALLEL || svd.singularValues ()[1] < PARALLEL)
     return false;
   const Eigen::Vector3d factors = svd.matrixV ().col (2);
@@ -58,42 +61,53 @@ findPencils (const std::vector<SharpSurface::ConstPtr> &surfaces, double toleran
   return pencils;
 }
 
-Enrichment::Enrichment (const ImplicitField &field)
-    : field_ (field), pencils_ (findPencils (field.options ().sharp_surfaces, field.spacing ()))
-{
-}
+Enrichment::Enrichment (const ImplicitField &field) : field_ (field) {}
 
 void
 Enrichment::gather (const Support &support)
 {
-  const auto &surfaces = field_.options ().sharp_surfaces;
-  const OrientedPoints &points = field_.points ();
   near_count_ = 0;
-  for (std::size_t s = 0; s < surfaces.size (); ++s)
+  near_pencils_.clear ();
+  const int surfaces = static_cast<int> (field_.options ().sharp_surfaces.size ());
+  for (int surface = 0; surface < surfaces; ++surface)
+    evaluateThetas (support, surface);
+  if (near_count_ < 3)
+    return;
+  std::vector<char> is_near (static_cast<std::size_t> (surfaces), 0);
+  for (std::size_t i = 0; i < near_count_; ++i)
+    is_near[static_cast<std::size_t> (near_[i].surface)] = 1;
+  for (const Pencil &pencil : field_.pencils ())
+    if (std::all_of (pencil.surfaces.begin (), pencil.surfaces.end (),
+                     [&] (int surface) { return is_near[static_cast<std::size_t> (surface)] != 0; }))
+      near_pencils_.push_back (pencil);
+}
+
+/** \brief Keep a surface that has gathered nodes on either side. */
+void
+Enrichment::evaluateThetas (const Support &support, int surface)
+{
+  const SharpSurface &sharp = *field_.options ().sharp_surfaces[static_cast<std::size_t> (surface)];
+  const OrientedPoints &points = field_.points ();
+  const auto position = [&points] (int node)
+  { return Eigen::Vector3d (points.positions[static_cast<std::size_t> (node)].cast<double> () + points.origin); };
+  if (near_.size () == near_count_)
+    near_.emplace_back ();
+  NearSurface &near = near_[near_count_];
+  near.surface = surface;
+  near.at_nodes.clear ();
+  bool below = false, above = false;
+  for (const int node : support.candidates ())
   {
-    if (near_.size () == near_count_)
-      near_.emplace_back ();
-    NearSurface &near = near_[near_count_];
-    near.surface = static_cast<int> (s);
-    near.at_nodes.clear ();
-    bool below = false, above = false;
-    for (const int node : support.candidates ())
-    {
-      const Eigen::Vector3d p = points.positions[static_cast<std::size_t> (node)].cast<double> () + points.origin;
-      const double theta = surfaces[s]->theta (p);
-      near.at_nodes.push_back ({theta, Eigen::Vector3d::Zero ()});
-      below = below || theta < 0.0;
-      above = above || theta > 0.0;
-    }
-    if (!below || !above)
-      continue;
-    for (std::size_t i = 0; i < near.at_nodes.size (); ++i)
-    {
-      const auto node = static_cast<std::size_t> (support.candidates ()[i]);
-      near.at_nodes[i].gradient = surfaces[s]->thetaGradient (points.positions[node].cast<double> () + points.origin);
-    }
-    ++near_count_;
+    const double theta = sharp.theta (position (node));
+    near.at_nodes.push_back ({theta, Eigen::Vector3d::Zero ()});
+    below = below || theta < 0.0;
+    above = above || theta > 0.0;
   }
+  if (!below || !above)
+    return;
+  for (std::size_t i = 0; i < near.at_nodes.size (); ++i)
+    near.at_nodes[i].gradient = sharp.thetaGradient (position (support.candidates ()[i]));
+  ++near_count_;
 }
 
 int
@@ -131,7 +145,7 @@ Enrichment::select (const Support &support, const Eigen::Vector3d &x)
   }
   if (terms_.size () < 3)
     return;
-  for (const Pencil &pencil : pencils_)
+  for (const Pencil &pencil : near_pencils_)
   {
     const int a = activeIndex (pencil.surfaces[0]), b = activeIndex (pencil.surfaces[1]);
     if (a >= 0 && b >= 0 && activeIndex (pencil.surfaces[2]) >= 0 && size () < MAX_TERMS)

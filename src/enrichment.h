@@ -81,6 +81,9 @@ private:
     bool active;
   };
 
+  void
+  evaluateThetas (const Support &support, int surface);
+
   int
   activeIndex (int surface) const;
 
@@ -88,7 +91,7 @@ private:
   evaluate (const Term &term, const Theta &a, const Theta *b, double radius, double &value, Eigen::Vector3d &gradient);
 
   const ImplicitField &field_;
-  std::vector<Pencil> pencils_;
+  std::vector<Pencil> near_pencils_;
   std::vector<NearSurface> near_;
   std::size_t near_count_ = 0; // near_ keeps its memory from ball to ball
   std::vector<Term> terms_;

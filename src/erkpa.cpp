@@ -3,6 +3,7 @@
 
 #include <pcl/common/io.h>
 
+#include <limits>
 #include <string>
 
 namespace erkpa
@@ -27,6 +28,16 @@ reportPoints (const std::string &class_name, const Report &report, const Options
               "neighbour to neighbour%s.\n",
               class_name.c_str (), points.without_normal,
               options.normals.has_view_point ? ", where the view point cannot have seen the surface" : "");
+}
+
+void
+reportRounding (const std::string &class_name, const ImplicitField &field, const Report &report)
+{
+  const double step = field.points ().origin.cwiseAbs ().maxCoeff () * std::numeric_limits<float>::epsilon ();
+  if (16.0 * step > report.polygonizer.voxel_size)
+    PCL_WARN ("[%s::reconstruct] Coordinates are rounded to steps of %g, with voxels of %g: triangles may collapse. "
+              "Subtract an offset from the cloud first.\n",
+              class_name.c_str (), step, report.polygonizer.voxel_size);
 }
 
 namespace

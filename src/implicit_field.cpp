@@ -22,6 +22,7 @@ ImplicitField::ImplicitField (std::shared_ptr<const OrientedPoints> points, Neig
   feature_size_ = spacing_ * std::sqrt (static_cast<double> (k) / CLEAN_SUPPORT);
   if (options_.radius == 0.0 && options_.k == 0)
     options_.k = k;
+  pencils_ = std::make_shared<const std::vector<Pencil>> (findPencils (options_.sharp_surfaces, spacing_));
 }
 
 ImplicitField::~ImplicitField () = default;
@@ -35,9 +36,9 @@ ImplicitField::typicalRadius () const
 Outcome
 ImplicitField::checkOptions (const FieldOptions &options)
 {
-  if (options.k != 0 && options.k < 4)
+  if (options.k != 0 && options.k < 5)
     return {Status::INVALID_SETTING, "k = " + std::to_string (options.k) +
-                                         " neighbours do not determine a surface: use at least 4, or 0 for automatic"};
+                                         " neighbours do not determine a surface: use at least 5, or 0 for automatic"};
   if (!(options.radius >= 0.0) || !std::isfinite (options.radius))
     return {Status::INVALID_SETTING, "the support radius must be positive and finite, or 0 to use k neighbours"};
   return {};

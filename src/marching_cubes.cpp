@@ -8,7 +8,10 @@
 #include "sparse_grid.h"
 #include "surface_tracking.h"
 #include "surface_vertices.h"
+#include "text.h"
 #include "threads.h"
+
+#include <Eigen/Geometry>
 
 #include <algorithm>
 #include <cmath>
@@ -198,6 +201,39 @@ dropUnsupported (const SparseGrid &grid, const std::vector<GridPoint> &cells_of_
   return dropped;
 }
 
+Outcome
+noSurface (const ImplicitField &field, double voxel, std::size_t dropped)
+{
+  std::string why = "no surface was found at the points: the support may hold too few of them (use a larger k or "
+                    "radius), or the iso level may lie beyond them";
+  if (voxel > 0.5 * extentOf (field.points ()).maxCoeff ())
+    why = "no surface was found: the voxel of " + toText (voxel) + " is as large as the cloud, use a smaller one";
+  else if (dropped > 0)
+    why = "only small pieces of surface were found, which too few points support: are these points of a surface?";
+  return {Status::NO_SURFACE, why};
+}
+
+/** \brief Gives vertices where the field has no gradient the mean direction of their triangles. */
+void
+fillNormals (const std::vector<Triangle> &triangles, SurfaceVertices &vertices)
+{
+  std::vector<Eigen::Vector3d> sums;
+  const auto is_missing = [] (const Eigen::Vector3d &n) { return n.isZero (0.0); };
+  if (std::none_of (vertices.normals.begin (), vertices.normals.end (), is_missing))
+    return;
+  sums.assign (vertices.normals.size (), Eigen::Vector3d::Zero ());
+  for (const Triangle &t : triangles)
+  {
+    const auto at = [&] (std::size_t i) { return vertices.positions[static_cast<std::size_t> (t[i])]; };
+    const Eigen::Vector3d area = (at (1) - at (0)).cross (at (2) - at (0));
+    for (const int v : t)
+      sums[static_cast<std::size_t> (v)] += area;
+  }
+  for (std::size_t v = 0; v < sums.size (); ++v)
+    if (is_missing (vertices.normals[v]))
+      vertices.normals[v] = sums[v].norm () > 0.0 ? Eigen::Vector3d (sums[v].normalized ()) : Eigen::Vector3d::UnitZ ();
+}
+
 TriangleMesh
 toInputFrame (const OrientedPoints &points, const SurfaceVertices &vertices, std::vector<Triangle> &triangles)
 {
@@ -240,8 +276,8 @@ polygonize (const ImplicitField &field, const PolygonizerOptions &options, Trian
   const double voxel = report.voxel_size = chooseVoxelSize (field, options);
   const double cells = extentOf (field.points ()).maxCoeff () / voxel;
   if (!(cells < SparseGrid::LIMIT))
-    return {Status::GRID_TOO_FINE, "a voxel of " + std::to_string (voxel) +
-                                       " is too small for the extent of the cloud: use a larger voxel size"};
+    return {Status::GRID_TOO_FINE,
+            "a voxel of " + toText (voxel) + " is too small for the extent of the cloud: use a larger voxel size"};
 
   // Off the middle of the cloud by odd shares of a cell: faces of boxes then do not fall on grid nodes.
   SparseGrid grid (-voxel * Eigen::Vector3d (0.371, 0.437, 0.293), voxel);
@@ -265,11 +301,13 @@ polygonize (const ImplicitField &field, const PolygonizerOptions &options, Trian
   const std::size_t in_cells = vertices.positions.size ();
   trimBorder (options.border_offset, triangles, vertices);
   projectVertices (field, options, in_cells, 0.1 * voxel, vertices, report);
-  report.dropped_components = dropUnsupported (grid, tracker.cellsOfNodes (), options.min_component_points,
-                                               vertices.positions.size (), triangles);
+  const int min_points = std::min (options.min_component_points, static_cast<int> (field.points ().size ()) / 2);
+  report.dropped_components =
+      dropUnsupported (grid, tracker.cellsOfNodes (), min_points, vertices.positions.size (), triangles);
   if (triangles.empty ())
-    return {Status::NO_SURFACE, "no surface was found at the points: the support may hold too few of them (use a "
-                                "larger k or radius), or the iso level may lie beyond them"};
+    return noSurface (field, voxel, report.dropped_components);
+  splitFans (triangles, vertices);
+  fillNormals (triangles, vertices);
   mesh = toInputFrame (field.points (), vertices, triangles);
   return {};
 }

@@ -2,7 +2,9 @@
 #include <erkpa/reconstruction.h>
 
 #include "support.h"
+#include "text.h"
 
+#include <algorithm>
 #include <chrono>
 #include <memory>
 #include <string>
@@ -42,12 +44,26 @@ collect (const PointView &view, const SearchFactory &make_search, OrientedPoints
   Outcome outcome = collectPoints (view, points, report.points);
   if (!outcome.ok ())
     return outcome;
-  if (points.size () < Support::MIN_NODES)
+  if (points.size () <= Support::MIN_NODES)
     return {Status::TOO_FEW_POINTS, "the input has " + std::to_string (points.size ()) +
                                         " distinct, finite points of " + std::to_string (report.points.read) +
-                                        " read: a surface needs at least " + std::to_string (Support::MIN_NODES)};
+                                        " read: a surface needs at least " + std::to_string (Support::MIN_NODES + 1)};
   search = make_search ? make_search (points) : makeKdTreeSearch (points.positions);
   return {};
+}
+
+/** \brief A radius far beyond the cloud makes one flat fit of everything, with zeros of rounding all over space. */
+Outcome
+checkRadius (const OrientedPoints &points, double radius)
+{
+  float size = 0.0f;
+  for (const Eigen::Vector3f &p : points.positions)
+    size = std::max (size, p.norm ());
+  constexpr double FAR = 20.0;
+  if (radius <= FAR * size)
+    return {};
+  return {Status::INVALID_SETTING, "the support radius is far larger than the cloud, which fits in a ball of radius " +
+                                       toText (size) + ": use a smaller one, or 0 to use k neighbours"};
 }
 
 } // namespace
@@ -75,11 +91,17 @@ buildField (const PointView &view, const Options &options, const SearchFactory &
       return outcome;
   }
   const StageClock clock (report.seconds_field);
+  outcome = checkRadius (*points, options.field.radius);
+  if (!outcome.ok ())
+    return outcome;
   field = std::make_shared<ImplicitField> (points, search, options.field);
   report.k = field->options ().radius > 0.0 ? 0 : field->options ().k;
   report.radius = field->options ().radius;
   report.spacing = field->spacing ();
-  return {};
+  if (report.spacing > 0.0)
+    return {};
+  field.reset ();
+  return {Status::TOO_FEW_POINTS, "the points lie closer together than floats can tell: scale the cloud up"};
 }
 
 Outcome

@@ -65,7 +65,7 @@ Support::searchNearest (const Eigen::Vector3d &center, double extent)
       1.2 * (center_radius_ > 0.0 ? std::min (center_radius_, 2.0 * field_.typicalRadius ()) : field_.typicalRadius ());
   candidates_.clear ();
   constexpr double FARTHEST = 1e18; // its square is still a float
-  for (; center.norm () < FARTHEST && guess < FARTHEST; guess *= 2.0)
+  for (; center.norm () < FARTHEST && guess > 0.0 && guess < FARTHEST; guess *= 2.0)
   {
     search (center, guess + 2.0 * extent);
     if (found_.size () < k)

@@ -27,6 +27,19 @@ struct SurfaceVertices
     border_offsets.resize (size);
     attributes.resize (size * static_cast<std::size_t> (channels));
   }
+
+  /** \brief Append a copy of a vertex. */
+  void
+  append (std::size_t vertex)
+  {
+    const std::size_t channels = attributes.size () / positions.size ();
+    for (std::size_t c = 0; c < channels; ++c)
+      attributes.push_back (attributes[vertex * channels + c]);
+    const Eigen::Vector3d position = positions[vertex], normal = normals[vertex];
+    positions.push_back (position);
+    normals.push_back (normal);
+    border_offsets.push_back (border_offsets[vertex]);
+  }
 };
 
 /** \brief Put a vertex on every cut edge of the grid, on f = iso.

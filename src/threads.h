@@ -11,11 +11,11 @@
 namespace erkpa
 {
 
-/** \brief Number of threads for a setting where 0 means all processors. */
+/** \brief Number of threads for a setting where 0 means all processors; more than any machine has are not started. */
 inline int
 threadCount (int threads)
 {
-  return threads > 0 ? threads : omp_get_max_threads ();
+  return threads > 0 ? std::min (threads, 256) : omp_get_max_threads ();
 }
 
 /** \brief Runs work (worker, i) for i = 0 .. count - 1 on several threads, with one worker per thread.

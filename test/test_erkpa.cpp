@@ -236,7 +236,7 @@ TEST (Erkpa, SaysThatThereIsNoInput)
 
 TEST (Erkpa, SaysThatThereAreTooFewPoints)
 {
-  for (const int count : {0, 1, 2, 3})
+  for (const int count : {0, 1, 2, 3, 4})
   {
     const auto cloud = shapes::cloud<pcl::PointNormal> (shapes::sphere (count));
     ERKPA<pcl::PointNormal> erkpa;
@@ -425,6 +425,47 @@ TEST (Erkpa, RefusesSettingsThatMakeNoSenseAndRecovers)
   EXPECT_EQ (erkpa.getStatus (), Status::OK);
   EXPECT_TRUE (erkpa.getStatusMessage ().empty ());
   EXPECT_NE (erkpa.getField (), nullptr);
+}
+
+TEST (Erkpa, RefusesARadiusFarBeyondTheCloud)
+{
+  ERKPA<pcl::PointNormal> erkpa;
+  erkpa.setInputCloud (shapes::cloud<pcl::PointNormal> (shapes::sphere (1000)));
+  erkpa.setRadiusSearch (1e6);
+  pcl::PolygonMesh mesh;
+  erkpa.reconstruct (mesh);
+  EXPECT_EQ (erkpa.getStatus (), Status::INVALID_SETTING);
+  expectEmpty (mesh);
+}
+
+TEST (Erkpa, TakesAnyNumberOfThreads)
+{
+  ERKPA<pcl::PointXYZ> erkpa;
+  erkpa.setInputCloud (shapes::cloud<pcl::PointXYZ> (shapes::sphere (500)));
+  erkpa.setNumberOfThreads (1000000000);
+  pcl::PolygonMesh mesh;
+  erkpa.reconstruct (mesh);
+  EXPECT_EQ (erkpa.getStatus (), Status::OK);
+}
+
+TEST (Erkpa, FieldIsUndefinedOnceItsSearchServesAnotherCloud)
+{
+  const auto search = std::make_shared<pcl::search::KdTree<pcl::PointNormal>> ();
+  ERKPA<pcl::PointNormal> erkpa;
+  erkpa.setInputCloud (shapes::cloud<pcl::PointNormal> (shapes::sphere (500)));
+  erkpa.setSearchMethod (search);
+  const erkpa::ImplicitField::ConstPtr field = erkpa.computeField ();
+  EXPECT_TRUE (field->sample ({1.0, 0.0, 0.0}).isDefined ());
+  search->setInputCloud (shapes::cloud<pcl::PointNormal> (shapes::sphere (50000)));
+  EXPECT_FALSE (field->sample ({1.0, 0.0, 0.0}).isDefined ());
+}
+
+TEST (Erkpa, TakesItsOwnSharpEdgesBack)
+{
+  ERKPA<pcl::PointNormal> erkpa;
+  erkpa.addSharpEdge (coefficients ({1, 0, 0, 0}));
+  EXPECT_TRUE (erkpa.setSharpEdges (erkpa.getSharpEdges ()));
+  EXPECT_EQ (erkpa.getSharpEdges ().size (), 1u);
 }
 
 TEST (Erkpa, MayWriteItsResultOverItsInput)

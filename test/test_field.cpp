@@ -359,7 +359,7 @@ TEST_F (Field, StaysDefinedAndFiniteFarFromThePointsWithANeighbourSupport)
 
 TEST_F (Field, NamesTheSettingThatMakesNoSense)
 {
-  for (const auto &options : {optionsOf (Order::LINEAR, 3), optionsOf (Order::LINEAR, -1),
+  for (const auto &options : {optionsOf (Order::LINEAR, 4), optionsOf (Order::LINEAR, -1),
                               optionsOf (Order::LINEAR, 0, -0.1), optionsOf (Order::LINEAR, 0, std::nan (""))})
   {
     const erkpa::Outcome outcome = ImplicitField::checkOptions (options);

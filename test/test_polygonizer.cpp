@@ -162,6 +162,17 @@ TEST (Polygonizer, TellsItsProgressFromZeroToOne)
   EXPECT_EQ (told.back (), 1.0);
 }
 
+TEST (Polygonizer, KeepsTheContractWhereTheRadiusIsTooSmallForThePoints)
+{
+  for (const double radius : {0.13, 0.16, 0.2})
+  {
+    erkpa::FieldOptions options;
+    options.radius = radius;
+    const TriangleMesh mesh = meshOf (*shapes::field (shapes::torus (1500, 1.0, 0.4), options));
+    EXPECT_MESH_CONTRACT (mesh, false);
+  }
+}
+
 TEST (Polygonizer, PutsItsVerticesOnTheZeroSet)
 {
   const auto field = shapes::field (shapes::torus (4000, 1.0, 0.4));

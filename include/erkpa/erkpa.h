@@ -72,7 +72,7 @@ public:
     return field_;
   }
 
-  /** \brief The neighbours of the support: ε(x) is the distance to the k-th nearest point. At least 4;
+  /** \brief The neighbours of the support: ε(x) is the distance to the k-th nearest point. At least 5;
    * 0 (default) chooses k from the noise of the points. */
   void
   setKSearch (int k)
@@ -210,7 +210,7 @@ public:
 
   /** \brief Replace all sharp edges; on a bad one none is changed, and false is returned. */
   bool
-  setSharpEdges (const std::vector<pcl::ModelCoefficients> &edges);
+  setSharpEdges (std::vector<pcl::ModelCoefficients> edges);
 
   const std::vector<pcl::ModelCoefficients> &
   getSharpEdges () const
@@ -246,7 +246,8 @@ public:
     return report_;
   }
 
-  /** \brief All settings at once, as the command line and other front ends fill them. */
+  /** \brief All settings at once, as the command line and other front ends fill them: the view point and the sharp
+   * surfaces are those of the options from then on, and getSharpEdges () knows none. */
   void
   setOptions (const Options &options);
 

@@ -14,6 +14,8 @@
 namespace erkpa
 {
 
+struct Pencil;
+
 /** \brief How the surface constrains the field at its nodes. */
 enum class Constraint
 {
@@ -25,7 +27,7 @@ struct FieldOptions
 {
   Order order = Order::SPHERICAL;              ///< what the field reproduces exactly
   Constraint constraint = Constraint::HERMITE; ///< what the nodes ask of the field
-  int k = 0;           ///< support radius = distance to the k-th nearest node, at least 4; 0 = chosen from the noise
+  int k = 0;           ///< support radius = distance to the k-th nearest node, at least 5; 0 = chosen from the noise
   double radius = 0.0; ///< constant support radius in the cloud's unit; 0 = use k
   std::vector<SharpSurface::ConstPtr> sharp_surfaces; ///< where the gradient of the field may jump
 };
@@ -121,6 +123,13 @@ public:
     return spacing_;
   }
 
+  /** \brief The triples of sharp planes that share a line, where corners can be. */
+  const std::vector<Pencil> &
+  pencils () const
+  {
+    return *pencils_;
+  }
+
   /** \brief Size of the smallest feature the nodes can show: the spacing, or more where noise hides finer ones. */
   double
   featureSize () const
@@ -136,6 +145,7 @@ private:
   std::shared_ptr<const OrientedPoints> points_;
   NeighborSearch::ConstPtr search_;
   FieldOptions options_;
+  std::shared_ptr<const std::vector<Pencil>> pencils_;
   double spacing_ = 0.0;
   double feature_size_ = 0.0;
 };

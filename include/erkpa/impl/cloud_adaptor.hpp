@@ -7,9 +7,9 @@
 #include <pcl/console/print.h>
 #include <pcl/conversions.h>
 #include <pcl/point_cloud.h>
-#include <pcl/point_traits.h>
 #include <pcl/point_types.h>
 #include <pcl/search/search.h>
+#include <pcl/type_traits.h>
 
 #include <limits>
 #include <string>
@@ -76,35 +76,47 @@ viewCloud (const pcl::PointCloud<PointT> &cloud)
   return view;
 }
 
-/** \brief Neighbour queries through a search of PCL that the user chose. */
+/** \brief Neighbour queries through a search of PCL that the user chose.
+ *
+ * Once the user gives the search another cloud, it finds nothing here any more: the field becomes undefined.
+ */
 template <typename PointT>
 class PclSearch : public NeighborSearch
 {
 public:
   PclSearch (typename pcl::search::Search<PointT>::Ptr tree, const OrientedPoints &points) : tree_ (std::move (tree))
   {
-    const typename pcl::PointCloud<PointT>::Ptr cloud (new pcl::PointCloud<PointT>);
-    cloud->resize (points.size ());
+    cloud_->resize (points.size ());
     for (std::size_t i = 0; i < points.size (); ++i)
-      (*cloud)[i].getVector3fMap () = points.positions[i];
-    tree_->setInputCloud (cloud);
+      (*cloud_)[i].getVector3fMap () = points.positions[i];
+    tree_->setInputCloud (cloud_);
   }
 
   void
   nearestK (const Eigen::Vector3f &x, int k, std::vector<int> &indices,
             std::vector<float> &squared_distances) const override
   {
-    tree_->nearestKSearch (query (x), k, indices, squared_distances);
+    if (isStillOurs (indices, squared_distances))
+      tree_->nearestKSearch (query (x), k, indices, squared_distances);
   }
 
   void
   withinRadius (const Eigen::Vector3f &x, double radius, std::vector<int> &indices,
                 std::vector<float> &squared_distances) const override
   {
-    tree_->radiusSearch (query (x), radius, indices, squared_distances);
+    if (isStillOurs (indices, squared_distances))
+      tree_->radiusSearch (query (x), radius, indices, squared_distances);
   }
 
 private:
+  bool
+  isStillOurs (std::vector<int> &indices, std::vector<float> &squared_distances) const
+  {
+    indices.clear ();
+    squared_distances.clear ();
+    return tree_->getInputCloud () == cloud_;
+  }
+
   static PointT
   query (const Eigen::Vector3f &x)
   {
@@ -114,6 +126,7 @@ private:
   }
 
   typename pcl::search::Search<PointT>::Ptr tree_;
+  typename pcl::PointCloud<PointT>::Ptr cloud_{new pcl::PointCloud<PointT>};
 };
 
 template <typename PointT>
@@ -194,5 +207,9 @@ toPolygonMesh (const TriangleMesh &mesh, Attributes attributes, const pcl::PCLHe
 /** \brief Tell the user, once per call, what was done about points that are not as they should be. */
 void
 reportPoints (const std::string &class_name, const Report &report, const Options &options);
+
+/** \brief Warn where the coordinates are so large that floats round the mesh visibly. */
+void
+reportRounding (const std::string &class_name, const ImplicitField &field, const Report &report);
 
 } // namespace erkpa

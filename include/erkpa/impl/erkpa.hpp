@@ -4,6 +4,7 @@
 // Everything that touches the memory of a pcl::PointCloud stands in this header, so that it is compiled with the
 // caller's flags: a program built with AVX lays out and frees Eigen-aligned memory differently from the library.
 
+#include <erkpa/erkpa.h>
 #include <erkpa/impl/cloud_adaptor.hpp>
 
 #include <pcl/console/print.h>
@@ -80,6 +81,8 @@ ERKPA<PointNT>::makeMesh (TriangleMesh &mesh)
         Outcome outcome = makeField ();
         if (outcome.ok ())
           outcome = buildMesh (*field_, options_, mesh, report_, progress_);
+        if (outcome.ok ())
+          reportRounding (getClassName (), *field_, report_);
         return outcome;
       });
 }
@@ -137,7 +140,7 @@ ERKPA<PointNT>::addSharpEdge (const pcl::ModelCoefficients &coefficients)
 
 template <typename PointNT>
 bool
-ERKPA<PointNT>::setSharpEdges (const std::vector<pcl::ModelCoefficients> &edges)
+ERKPA<PointNT>::setSharpEdges (std::vector<pcl::ModelCoefficients> edges)
 {
   std::vector<pcl::ModelCoefficients> old_edges;
   std::vector<SharpSurface::ConstPtr> old_surfaces;
