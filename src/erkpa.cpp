@@ -49,7 +49,8 @@ reconstructAs (const pcl::PCLPointCloud2 &input, const Options &options, pcl::Po
                ImplicitField::ConstPtr *field, const ProgressCallback &progress)
 {
   const typename pcl::PointCloud<PointT>::Ptr cloud (new pcl::PointCloud<PointT>);
-  pcl::fromPCLPointCloud2 (input, *cloud);
+  if (!input.data.empty ()) // PCL's conversion is undefined without points
+    pcl::fromPCLPointCloud2 (input, *cloud);
   ERKPA<PointT> erkpa;
   erkpa.setOptions (options);
   erkpa.setProgressCallback (progress);

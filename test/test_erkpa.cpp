@@ -507,3 +507,11 @@ TEST (Erkpa, ReconstructsACloudWhoseFieldsAreKnownAtRunTime)
   EXPECT_NEAR (field->value ({1.1, 0.0, 0.0}), 0.1, 0.01);
   EXPECT_EQ (report.triangles, mesh.polygons.size ());
 }
+
+TEST (Erkpa, RefusesAnEmptyCloudWhoseFieldsAreKnownAtRunTime)
+{
+  pcl::PolygonMesh mesh = usedMesh ();
+  erkpa::Report report;
+  EXPECT_EQ (erkpa::reconstruct (pcl::PCLPointCloud2 (), {}, mesh, report).status, Status::TOO_FEW_POINTS);
+  expectEmpty (mesh);
+}
