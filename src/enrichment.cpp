@@ -45,23 +45,29 @@ std::vector<Pencil>
 findPencils (const std::vector<SharpSurface::ConstPtr> &surfaces, double tolerance)
 {
   std::vector<const SharpPlane *> planes (surfaces.size ());
+  std::vector<const SpaceWarp *> warps (surfaces.size ());
   for (std::size_t i = 0; i < surfaces.size (); ++i)
-    planes[i] = dynamic_cast<const SharpPlane *> (surfaces[i].get ());
+    planes[i] = planeBehind (*surfaces[i], &warps[i]);
   std::vector<Pencil> pencils;
   const int n = static_cast<int> (surfaces.size ());
   const auto plane = [&] (int i) { return planes[static_cast<std::size_t> (i)]; };
+  const auto warp = [&] (int i) { return warps[static_cast<std::size_t> (i)]; };
   for (int a = 0; a < n; ++a)
     for (int b = a + 1; b < n; ++b)
       for (int c = b + 1; c < n; ++c)
       {
         Pencil pencil{{a, b, c}, 0.0, 0.0};
-        if (plane (a) && plane (b) && plane (c) && pencilOf ({plane (a), plane (b), plane (c)}, tolerance, pencil))
+        if (plane (a) && plane (b) && plane (c) && warp (a) == warp (b) && warp (b) == warp (c) &&
+            pencilOf ({plane (a), plane (b), plane (c)}, tolerance, pencil))
           pencils.push_back (pencil);
       }
   return pencils;
 }
 
-Enrichment::Enrichment (const ImplicitField &field) : field_ (field) {}
+Enrichment::Enrichment (const ImplicitField &field)
+    : field_ (field), jumps_ (field.options ().enrichment == EnrichmentType::JUMP)
+{
+}
 
 void
 Enrichment::gather (const Support &support)
@@ -87,26 +93,26 @@ void
 Enrichment::evaluateThetas (const Support &support, int surface)
 {
   const SharpSurface &sharp = *field_.options ().sharp_surfaces[static_cast<std::size_t> (surface)];
-  const OrientedPoints &points = field_.points ();
-  const auto position = [&points] (int node)
-  { return Eigen::Vector3d (points.positions[static_cast<std::size_t> (node)].cast<double> () + points.origin); };
+  const std::size_t slots = support.points ().size ();
+  const auto position = [&] (std::size_t slot)
+  { return Eigen::Vector3d (support.position (slot) + field_.points ().origin); };
   if (near_.size () == near_count_)
     near_.emplace_back ();
   NearSurface &near = near_[near_count_];
   near.surface = surface;
   near.at_nodes.clear ();
   bool below = false, above = false;
-  for (const int node : support.candidates ())
+  for (std::size_t slot = 0; slot < slots; ++slot)
   {
-    const double theta = sharp.theta (position (node));
+    const double theta = sharp.theta (position (slot));
     near.at_nodes.push_back ({theta, Eigen::Vector3d::Zero ()});
     below = below || theta < 0.0;
     above = above || theta > 0.0;
   }
   if (!below || !above)
     return;
-  for (std::size_t i = 0; i < near.at_nodes.size (); ++i)
-    near.at_nodes[i].gradient = sharp.thetaGradient (position (support.candidates ()[i]));
+  for (std::size_t slot = 0; slot < slots; ++slot)
+    near.at_nodes[slot].gradient = sharp.thetaGradient (position (slot));
   ++near_count_;
 }
 
@@ -146,16 +152,25 @@ Enrichment::select (const Support &support, const Eigen::Vector3d &x)
   if (terms_.size () < 3)
     return;
   for (const Pencil &pencil : near_pencils_)
-  {
-    const int a = activeIndex (pencil.surfaces[0]), b = activeIndex (pencil.surfaces[1]);
-    if (a >= 0 && b >= 0 && activeIndex (pencil.surfaces[2]) >= 0 && size () < MAX_TERMS)
-      terms_.push_back ({a, b, pencil.scale_a, pencil.scale_b});
-  }
+    addCornerTerms (pencil);
+}
+
+void
+Enrichment::addCornerTerms (const Pencil &pencil)
+{
+  const int a = activeIndex (pencil.surfaces[0]), b = activeIndex (pencil.surfaces[1]);
+  const int c = activeIndex (pencil.surfaces[2]);
+  if (a < 0 || b < 0 || c < 0 || size () + 1 + (jumps_ ? 1 : 0) > MAX_TERMS)
+    return;
+  terms_.push_back ({a, b, pencil.scale_a, pencil.scale_b});
+  // The six sectors around the line have six indicators: 1, H(a), H(b), H(c), and two products.
+  if (jumps_)
+    terms_.push_back ({b, c, 1.0, 1.0});
 }
 
 void
 Enrichment::evaluate (const Term &term, const Theta &a, const Theta *b, double radius, double &value,
-                      Eigen::Vector3d &gradient)
+                      Eigen::Vector3d &gradient) const
 {
   double height = term.scale_a * a.value;
   Eigen::Vector3d slope = term.scale_a * a.gradient;
@@ -164,9 +179,13 @@ Enrichment::evaluate (const Term &term, const Theta &a, const Theta *b, double r
     height = term.scale_b * b->value;
     slope = term.scale_b * b->gradient;
   }
-  const bool positive = height >= 0.0; // H(0) = 1, eq. (23)
-  value = positive ? height / radius : 0.0;
-  gradient = positive ? slope : Eigen::Vector3d (Eigen::Vector3d::Zero ());
+  value = 0.0;
+  gradient.setZero ();
+  if (!(height >= 0.0)) // H(0) = 1, eq. (23)
+    return;
+  value = jumps_ ? 1.0 : height / radius;
+  if (!jumps_)
+    gradient = slope;
 }
 
 void

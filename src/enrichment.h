@@ -20,11 +20,13 @@ struct Pencil
   double scale_a, scale_b;
 };
 
-/** \brief The pencils among planes: triples that share a line to within \a tolerance (a length). */
+/** \brief The pencils among planes: triples that share a line to within \a tolerance (a length). Planes seen through
+ * the same warp share the warped line. */
 std::vector<Pencil>
 findPencils (const std::vector<SharpSurface::ConstPtr> &surfaces, double tolerance);
 
-/** \brief The terms that sharp surfaces add to the reproduction vector: θH(θ) (eq. 22) and the corner terms.
+/** \brief The terms that sharp surfaces add to the reproduction vector, and those of the corners: θH(θ) (eq. 22), at a
+ * pencil min (a⁺, b⁺); or, where the field may jump, H(θ), at a pencil H(a)H(b) and H(b)H(c).
  *
  * A surface is active at x where the support holds nodes on either side of it (paper, section 3.3).
  */
@@ -36,7 +38,7 @@ public:
 
   explicit Enrichment (const ImplicitField &field);
 
-  /** \brief Evaluate θ and ∇θ at the gathered nodes, for the surfaces that pass between them. */
+  /** \brief Evaluate θ and ∇θ at the gathered value points, for the surfaces that pass between them. */
   void
   gather (const Support &support);
 
@@ -51,7 +53,14 @@ public:
     return static_cast<int> (terms_.size ());
   }
 
-  /** \brief Value and gradient of an active term at a gathered node, in the scaled coordinates (θ/ε). */
+  /** \brief The power of the length scale that the terms go with. */
+  int
+  degree () const
+  {
+    return jumps_ ? 0 : 1;
+  }
+
+  /** \brief Value and gradient of an active term at a gathered value point, in the scaled coordinates (θ/ε). */
   void
   atNode (int term, int slot, double radius, double &value, Eigen::Vector3d &gradient) const;
 
@@ -66,7 +75,7 @@ private:
     Eigen::Vector3d gradient;
   };
 
-  /** \brief A term: θ⁺ of one near surface (second < 0), or min (a⁺, b⁺) of two. */
+  /** \brief A term of one near surface (second < 0), or of two that meet in a corner. */
   struct Term
   {
     int first, second;
@@ -87,10 +96,15 @@ private:
   int
   activeIndex (int surface) const;
 
-  static void
-  evaluate (const Term &term, const Theta &a, const Theta *b, double radius, double &value, Eigen::Vector3d &gradient);
+  void
+  addCornerTerms (const Pencil &pencil);
+
+  void
+  evaluate (const Term &term, const Theta &a, const Theta *b, double radius, double &value,
+            Eigen::Vector3d &gradient) const;
 
   const ImplicitField &field_;
+  bool jumps_;
   std::vector<Pencil> near_pencils_;
   std::vector<NearSurface> near_;
   std::size_t near_count_ = 0; // near_ keeps its memory from ball to ball

@@ -3,11 +3,103 @@
 
 #include <pcl/common/io.h>
 
+#include <algorithm>
+#include <cstdint>
+#include <cstring>
 #include <limits>
 #include <string>
+#include <vector>
 
 namespace erkpa
 {
+
+namespace
+{
+
+template <typename T>
+void
+readAs (const CloudBytes &cloud, std::size_t offset, std::vector<float> &values)
+{
+  for (std::size_t i = 0; i < cloud.size; ++i)
+  {
+    T value;
+    std::memcpy (&value, cloud.data + i * cloud.point_step + offset, sizeof (T));
+    values[i] = static_cast<float> (value);
+  }
+}
+
+} // namespace
+
+Outcome
+readField (const CloudBytes &cloud, const std::string &name, std::vector<float> &values)
+{
+  using Field = pcl::PCLPointField;
+  if (name.empty ())
+    return {};
+  const auto field =
+      std::find_if (cloud.fields.begin (), cloud.fields.end (), [&name] (const Field &f) { return f.name == name; });
+  std::string names;
+  for (const Field &other : cloud.fields)
+    names += (names.empty () ? "" : ", ") + other.name;
+  if (field == cloud.fields.end ())
+    return {Status::INVALID_SETTING, "the cloud has no field \"" + name + "\": it has " + names};
+  values.assign (cloud.size, 0.0f);
+  switch (field->datatype)
+  {
+    case Field::INT8:
+      readAs<std::int8_t> (cloud, field->offset, values);
+      break;
+    case Field::UINT8:
+      readAs<std::uint8_t> (cloud, field->offset, values);
+      break;
+    case Field::INT16:
+      readAs<std::int16_t> (cloud, field->offset, values);
+      break;
+    case Field::UINT16:
+      readAs<std::uint16_t> (cloud, field->offset, values);
+      break;
+    case Field::INT32:
+      readAs<std::int32_t> (cloud, field->offset, values);
+      break;
+    case Field::UINT32:
+      readAs<std::uint32_t> (cloud, field->offset, values);
+      break;
+    case Field::FLOAT64:
+      readAs<double> (cloud, field->offset, values);
+      break;
+    default:
+      readAs<float> (cloud, field->offset, values);
+      break;
+  }
+  return {};
+}
+
+bool
+surfaceModelOf (pcl::SacModel model, SurfaceModel &surface)
+{
+  switch (model)
+  {
+    case pcl::SACMODEL_PLANE:
+    case pcl::SACMODEL_PARALLEL_PLANE:
+    case pcl::SACMODEL_PERPENDICULAR_PLANE:
+    case pcl::SACMODEL_NORMAL_PLANE:
+    case pcl::SACMODEL_NORMAL_PARALLEL_PLANE:
+      surface = SurfaceModel::PLANE;
+      return true;
+    case pcl::SACMODEL_SPHERE:
+    case pcl::SACMODEL_NORMAL_SPHERE:
+      surface = SurfaceModel::SPHERE;
+      return true;
+    case pcl::SACMODEL_CYLINDER:
+      surface = SurfaceModel::CYLINDER;
+      return true;
+    case pcl::SACMODEL_CONE:
+      surface = SurfaceModel::CONE;
+      return true;
+    default:
+      return false;
+  }
+}
 
 void
 reportPoints (const std::string &class_name, const Report &report, const Options &options)
@@ -16,6 +108,9 @@ reportPoints (const std::string &class_name, const Report &report, const Options
   if (points.not_finite + points.duplicate > 0)
     PCL_WARN ("[%s::reconstruct] Of %zu points %zu are not finite and %zu repeat another: they are left out.\n",
               class_name.c_str (), points.read, points.not_finite, points.duplicate);
+  if (points.no_confidence > 0)
+    PCL_WARN ("[%s::reconstruct] %zu points have no positive confidence: they are left out.\n", class_name.c_str (),
+              points.no_confidence);
   if (points.without_normal == 0)
     return;
   const Eigen::Vector3d &eye = options.normals.view_point;
@@ -43,22 +138,46 @@ reportRounding (const std::string &class_name, const ImplicitField &field, const
 namespace
 {
 
+/** \brief What a call at run time fills in; no mesh is made where there is none to fill. */
+struct Result
+{
+  pcl::PolygonMesh *mesh;
+  ImplicitField::ConstPtr *field;
+  Report *report;
+};
+
 template <typename PointT>
 Outcome
-reconstructAs (const pcl::PCLPointCloud2 &input, const Options &options, pcl::PolygonMesh &mesh, Report &report,
-               ImplicitField::ConstPtr *field, const ProgressCallback &progress)
+runAs (const pcl::PCLPointCloud2 &input, const Options &options, const ProgressCallback &progress, const Result &result)
 {
   const typename pcl::PointCloud<PointT>::Ptr cloud (new pcl::PointCloud<PointT>);
   if (!input.data.empty ()) // PCL's conversion is undefined without points
     pcl::fromPCLPointCloud2 (input, *cloud);
+  const CloudBytes bytes{input.fields, input.data.data (), input.point_step, cloud->size ()};
+  std::vector<float> radii, confidences;
+  Outcome outcome = readField (bytes, options.points.radius_field, radii);
+  if (outcome.ok ())
+    outcome = readField (bytes, options.points.confidence_field, confidences);
+  if (!outcome.ok ())
+  {
+    PCL_ERROR ("[erkpa::reconstruct] %s.\n", outcome.message.c_str ());
+    return outcome;
+  }
+  Options typed = options;
+  typed.points = PointOptions (); // PointT does not have these fields
   ERKPA<PointT> erkpa;
-  erkpa.setOptions (options);
+  erkpa.setOptions (typed);
+  erkpa.setRadii (radii);
+  erkpa.setConfidences (confidences);
   erkpa.setProgressCallback (progress);
   erkpa.setInputCloud (cloud);
-  erkpa.reconstruct (mesh);
-  report = erkpa.getReport ();
-  if (field != nullptr)
-    *field = erkpa.getField ();
+  if (result.mesh != nullptr)
+    erkpa.reconstruct (*result.mesh);
+  else
+    erkpa.computeField ();
+  *result.report = erkpa.getReport ();
+  if (result.field != nullptr)
+    *result.field = erkpa.getField ();
   return {erkpa.getStatus (), erkpa.getStatusMessage ()};
 }
 
@@ -68,21 +187,41 @@ hasField (const pcl::PCLPointCloud2 &cloud, const std::string &name)
   return pcl::getFieldIndex (cloud, name) >= 0;
 }
 
+/** \brief As the point type that holds most of what the cloud has. */
+Outcome
+run (const pcl::PCLPointCloud2 &cloud, const Options &options, const ProgressCallback &progress, const Result &result)
+{
+  const bool normals = hasField (cloud, "normal_x");
+  if (hasField (cloud, "rgb") || hasField (cloud, "rgba"))
+    return normals ? runAs<pcl::PointXYZRGBNormal> (cloud, options, progress, result)
+                   : runAs<pcl::PointXYZRGB> (cloud, options, progress, result);
+  if (hasField (cloud, "intensity"))
+    return normals ? runAs<pcl::PointXYZINormal> (cloud, options, progress, result)
+                   : runAs<pcl::PointXYZI> (cloud, options, progress, result);
+  return normals ? runAs<pcl::PointNormal> (cloud, options, progress, result)
+                 : runAs<pcl::PointXYZ> (cloud, options, progress, result);
+}
+
 } // namespace
 
 Outcome
 reconstruct (const pcl::PCLPointCloud2 &cloud, const Options &options, pcl::PolygonMesh &mesh, Report &report,
              ImplicitField::ConstPtr *field, const ProgressCallback &progress)
 {
-  const bool normals = hasField (cloud, "normal_x");
-  if (hasField (cloud, "rgb") || hasField (cloud, "rgba"))
-    return normals ? reconstructAs<pcl::PointXYZRGBNormal> (cloud, options, mesh, report, field, progress)
-                   : reconstructAs<pcl::PointXYZRGB> (cloud, options, mesh, report, field, progress);
-  if (hasField (cloud, "intensity"))
-    return normals ? reconstructAs<pcl::PointXYZINormal> (cloud, options, mesh, report, field, progress)
-                   : reconstructAs<pcl::PointXYZI> (cloud, options, mesh, report, field, progress);
-  return normals ? reconstructAs<pcl::PointNormal> (cloud, options, mesh, report, field, progress)
-                 : reconstructAs<pcl::PointXYZ> (cloud, options, mesh, report, field, progress);
+  mesh = pcl::PolygonMesh ();
+  report = Report ();
+  if (field != nullptr)
+    field->reset ();
+  return run (cloud, options, progress, {&mesh, field, &report});
+}
+
+Outcome
+computeField (const pcl::PCLPointCloud2 &cloud, const Options &options, ImplicitField::ConstPtr &field, Report &report,
+              const ProgressCallback &progress)
+{
+  field.reset ();
+  report = Report ();
+  return run (cloud, options, progress, {nullptr, &field, &report});
 }
 
 } // namespace erkpa

@@ -3,6 +3,7 @@
 
 #include "local_field.h"
 #include "noise.h"
+#include "support_size.h"
 #include "threads.h"
 
 #include <algorithm>
@@ -13,35 +14,111 @@
 namespace erkpa
 {
 
+namespace
+{
+
+Kernel::ConstPtr
+kernelOf (const FieldOptions &options)
+{
+  const bool collocates = options.interpolation == Interpolation::COLLOCATION;
+  const KernelType type =
+      options.kernel == KernelType::AUTOMATIC && collocates ? KernelType::WENDLAND_C2 : options.kernel;
+  const Kernel::ConstPtr kernel = options.user_kernel ? options.user_kernel : makeKernel (type);
+  return options.interpolation == Interpolation::SINGULAR ? makeSingular (kernel) : kernel;
+}
+
+Outcome
+checkSupport (const FieldOptions &options)
+{
+  const auto bad = [] (const std::string &why) { return Outcome{Status::INVALID_SETTING, why}; };
+  if (options.k != 0 && options.k < 5)
+    return bad ("k = " + std::to_string (options.k) +
+                " neighbours do not determine a surface: use at least 5, or 0 for automatic");
+  if (!(options.radius >= 0.0) || !std::isfinite (options.radius))
+    return bad ("the support radius must be positive and finite, or 0 to use k neighbours");
+  const RadiusRamp &ramp = options.radius_ramp;
+  const auto is_length = [] (double radius) { return radius > 0.0 && std::isfinite (radius); };
+  if (ramp.axis > 2 || (ramp.axis >= 0 && !(is_length (ramp.from) && is_length (ramp.to))))
+    return bad ("the ramp of the support radius needs the axis 0, 1 or 2 and two positive radii");
+  const int given = (options.k > 0) + (options.radius > 0.0) + (ramp.axis >= 0) + (options.radius_function != nullptr);
+  if (given > 1)
+    return bad ("k, a radius, a ramp and a function of the support radius exclude each other: give one of them");
+  return {};
+}
+
+} // namespace
+
 ImplicitField::ImplicitField (std::shared_ptr<const OrientedPoints> points, NeighborSearch::ConstPtr search,
                               const FieldOptions &options)
-    : points_ (std::move (points)), search_ (std::move (search)), options_ (options)
+    : points_ (std::move (points)), search_ (std::move (search)), options_ (options), kernel_ (kernelOf (options))
 {
   const int k = chooseSupportSize (*points_, *search_);
-  spacing_ = measureSpacing (*points_, *search_);
-  feature_size_ = spacing_ * std::sqrt (static_cast<double> (k) / CLEAN_SUPPORT);
-  if (options_.radius == 0.0 && options_.k == 0)
+  const double spacing = measureSpacing (points_->positions, *search_);
+  if (options_.k == 0 && SupportSize::kindOf (*points_, options_) == SupportSize::Kind::NEAREST)
     options_.k = k;
-  pencils_ = std::make_shared<const std::vector<Pencil>> (findPencils (options_.sharp_surfaces, spacing_));
+  support_size_ = std::make_shared<const SupportSize> (*points_, options_, spacing);
+  warpPositions ();
+  spacing_ = options_.warp ? measureSpacing (warped_positions_, *warped_search_) : spacing;
+  feature_size_ = spacing_ * std::sqrt (static_cast<double> (k) / CLEAN_SUPPORT);
+  pencils_ = std::make_shared<const std::vector<Pencil>> (findPencils (options_.sharp_surfaces, spacing));
+  if (options_.constraint != Constraint::OFFSURFACE)
+    return;
+  offsets_ = support_size_->radiiOfNodes (*search_);
+  for (float &offset : offsets_)
+  {
+    offset = static_cast<float> (options_.offset * static_cast<double> (offset));
+    largest_offset_ = std::max (largest_offset_, static_cast<double> (offset));
+  }
 }
 
 ImplicitField::~ImplicitField () = default;
 
+void
+ImplicitField::warpPositions ()
+{
+  if (!options_.warp)
+    return;
+  for (const Eigen::Vector3f &p : points_->positions)
+    warped_positions_.emplace_back (
+        (options_.warp->map (p.cast<double> () + points_->origin) - points_->origin).cast<float> ());
+  warped_search_ = makeKdTreeSearch (warped_positions_);
+}
+
+double
+ImplicitField::nodeValue (int node, int side) const
+{
+  if (values_.empty ())
+    return side == 0 ? 0.0 : side * offsetOf (node);
+  const int s = side < 0 ? 2 : side;
+  return values_[static_cast<std::size_t> (valuesPerNode () * node + s)];
+}
+
+void
+ImplicitField::setNodeValues (std::vector<double> values)
+{
+  values_ = std::move (values);
+}
+
 double
 ImplicitField::typicalRadius () const
 {
-  return options_.radius > 0.0 ? options_.radius : spacing_ * std::sqrt (options_.k / M_PI);
+  return support_size_->typical ();
 }
 
 Outcome
 ImplicitField::checkOptions (const FieldOptions &options)
 {
-  if (options.k != 0 && options.k < 5)
-    return {Status::INVALID_SETTING, "k = " + std::to_string (options.k) +
-                                         " neighbours do not determine a surface: use at least 5, or 0 for automatic"};
-  if (!(options.radius >= 0.0) || !std::isfinite (options.radius))
-    return {Status::INVALID_SETTING, "the support radius must be positive and finite, or 0 to use k neighbours"};
-  return {};
+  const auto bad = [] (const std::string &why) { return Outcome{Status::INVALID_SETTING, why}; };
+  if (!(options.offset > 0.0 && options.offset < 1.0))
+    return bad ("the offset of off-surface points is a share of the support radius: use a value between 0 and 1");
+  if (!(options.flatten > 0.0 && options.flatten <= 1.0))
+    return bad ("flatten is the share of the radius that supports reach along the normals: use a value above 0, at "
+                "most 1");
+  const bool is_singular = options.kernel == KernelType::SINGULAR && !options.user_kernel;
+  if (is_singular && options.interpolation != Interpolation::NONE)
+    return bad ("the singular kernel interpolates by itself: leave interpolation at none, or take another kernel");
+  const Outcome outcome = options.user_kernel ? checkKernel (*options.user_kernel) : Outcome ();
+  return outcome.ok () ? checkSupport (options) : outcome;
 }
 
 double

@@ -1,7 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "local_field.h"
 
-#include "hermite_fit.h"
+#include "field_fit.h"
+
+#include <Eigen/LU>
+#include <Eigen/SVD>
 
 #include <algorithm>
 #include <cmath>
@@ -12,8 +15,52 @@ namespace erkpa
 void
 LocalField::gather (const Eigen::Vector3d &center, double extent)
 {
+  if (warp_ == nullptr)
+  {
+    gatherUnwarped (center, extent);
+    return;
+  }
+  startGuess (center);
+  constexpr double MARGIN = 1.5; // the Jacobian changes over the ball; points beyond gather for themselves
+  const double stretch = Eigen::JacobiSVD<Eigen::Matrix3d> (unwarping_).singularValues ()[0];
+  gatherUnwarped (guess_ + unwarping_ * (center - warped_center_), MARGIN * stretch * extent);
+}
+
+void
+LocalField::gatherUnwarped (const Eigen::Vector3d &center, double extent)
+{
+  ball_center_ = center;
+  ball_extent_ = extent;
   support_.gather (center, extent);
   enrichment_.gather (support_);
+}
+
+/** \brief Points near \a center are sought from where its nearest node comes from. */
+void
+LocalField::startGuess (const Eigen::Vector3d &center)
+{
+  std::vector<int> nearest;
+  std::vector<float> squared;
+  field_.surfaceSearch ().nearestK (center.cast<float> (), 1, nearest, squared);
+  if (nearest.empty ())
+    return;
+  const auto node = static_cast<std::size_t> (nearest.front ());
+  guess_ = field_.points ().positions[node].cast<double> ();
+  warped_center_ = field_.surfacePositions ()[node].cast<double> ();
+  unwarping_ = warp_->jacobian (guess_ + field_.points ().origin).inverse ();
+}
+
+bool
+LocalField::unwarp (const Eigen::Vector3d &x, Eigen::Vector3d &unwarped)
+{
+  const Eigen::Vector3d &origin = field_.points ().origin;
+  constexpr double TOLERANCE = 1e-6; // of the nodes' spacing; the method stops far below where it can
+  Eigen::Vector3d position = guess_ + origin;
+  if (!warp_->invert (x + origin, position, TOLERANCE * field_.spacing ()))
+    return false;
+  unwarping_ = warp_->jacobian (position).inverse ();
+  unwarped = position - origin;
+  return unwarped.allFinite () && unwarping_.allFinite ();
 }
 
 double
@@ -31,6 +78,8 @@ LocalField::sample (const Eigen::Vector3d &x)
     static_cast<FieldSample &> (sample) = result_;
   sample.radius = support_.radius ();
   sample.border_offset = borderOffset ();
+  if (warp_ != nullptr)
+    sample.gradient = unwarping_.transpose () * sample.gradient; // of f (warp^-1 (x))
   return sample;
 }
 
@@ -46,6 +95,21 @@ bool
 LocalField::evaluate (const Eigen::Vector3d &x, Task task)
 {
   result_ = FieldSample ();
+  if (warp_ == nullptr)
+    return evaluateUnwarped (x, task);
+  Eigen::Vector3d unwarped;
+  if (!unwarp (x, unwarped))
+    return false;
+  if ((unwarped - ball_center_).norm () > ball_extent_)
+    gatherUnwarped (unwarped, 0.0);
+  return evaluateUnwarped (unwarped, task);
+}
+
+bool
+LocalField::evaluateUnwarped (const Eigen::Vector3d &x, Task task)
+{
+  if (!support_.covers (x))
+    gatherUnwarped (x, 0.0);
   if (!support_.select (x))
     return false;
   ++evaluations_;
@@ -83,7 +147,7 @@ template <typename BasisT, int Size, int MaxSize>
 void
 LocalField::fitWith (Task task)
 {
-  HermiteFit<BasisT, Size, MaxSize> fit (field_.points (), support_, enrichment_);
+  FieldFit<BasisT, Size, MaxSize> fit (field_.points (), field_.options ().constraint, support_, enrichment_);
   result_.value = fit.value ();
   if (task == Task::GRADIENT)
     result_.gradient = fit.gradient ();
@@ -118,7 +182,7 @@ LocalField::blendAttributes (float *attributes) const
   std::vector<double> sums (channels, 0.0);
   for (const SupportNode &node : support_.nodes ())
   {
-    const auto i = static_cast<std::size_t> (support_.candidates ()[static_cast<std::size_t> (node.slot)]);
+    const auto i = static_cast<std::size_t> (support_.pointOf (node).node);
     total += node.weight;
     for (std::size_t c = 0; c < channels; ++c)
       sums[c] += node.weight * static_cast<double> (points.attributes[i * channels + c]);

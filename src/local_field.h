@@ -20,12 +20,17 @@ struct LocalSample : FieldSample
 
 /** \brief The field seen from one ball: gathers the nodes once, then evaluates f at any of the ball's points.
  *
- * Works in the local frame of OrientedPoints. One object per thread; its memory is reused from ball to ball.
+ * Works in the local frame of OrientedPoints; a warped field is evaluated where the warp comes from. One object per
+ * thread; its memory is reused from ball to ball.
  */
 class LocalField
 {
 public:
-  explicit LocalField (const ImplicitField &field) : field_ (field), support_ (field), enrichment_ (field) {}
+  /** \param[in] unwarped look at the field as it is before its warp */
+  explicit LocalField (const ImplicitField &field, bool unwarped = false)
+      : field_ (field), warp_ (unwarped ? nullptr : field.options ().warp.get ()), support_ (field), enrichment_ (field)
+  {
+  }
 
   /** \brief Prepare for points within \a extent of \a center. */
   void
@@ -79,6 +84,20 @@ private:
   bool
   evaluate (const Eigen::Vector3d &x, Task task);
 
+  /** \brief The same in the space the nodes are given in. */
+  bool
+  evaluateUnwarped (const Eigen::Vector3d &x, Task task);
+
+  void
+  gatherUnwarped (const Eigen::Vector3d &center, double extent);
+
+  void
+  startGuess (const Eigen::Vector3d &center);
+
+  /** \brief The point that the warp takes to \a x; local frames. */
+  bool
+  unwarp (const Eigen::Vector3d &x, Eigen::Vector3d &unwarped);
+
   template <typename BasisT>
   void
   fit (Task task);
@@ -91,8 +110,14 @@ private:
   borderOffset () const;
 
   const ImplicitField &field_;
+  const SpaceWarp *warp_; // null: none
   Support support_;
   Enrichment enrichment_;
+  Eigen::Vector3d ball_center_ = Eigen::Vector3d::Zero (); // gathered for, unwarped
+  double ball_extent_ = 0.0;
+  Eigen::Vector3d warped_center_ = Eigen::Vector3d::Zero (); // where the warp takes guess_
+  Eigen::Vector3d guess_ = Eigen::Vector3d::Zero ();         // unwarped
+  Eigen::Matrix3d unwarping_ = Eigen::Matrix3d::Identity (); // Jacobian of warp^-1 at the point last evaluated
   FieldSample result_;
   std::vector<ShapeFunction> shape_functions_;
   std::size_t evaluations_ = 0, support_nodes_ = 0;

@@ -27,10 +27,10 @@ using Triangle = std::array<int, 3>;
 
 /** \brief Lengths of the box around the nodes. */
 Eigen::Vector3d
-extentOf (const OrientedPoints &points)
+extentOf (const ImplicitField &field)
 {
-  Eigen::Vector3f low = points.positions.front (), high = low;
-  for (const Eigen::Vector3f &p : points.positions)
+  Eigen::Vector3f low = field.surfacePositions ().front (), high = low;
+  for (const Eigen::Vector3f &p : field.surfacePositions ())
   {
     low = low.cwiseMin (p);
     high = high.cwiseMax (p);
@@ -206,7 +206,7 @@ noSurface (const ImplicitField &field, double voxel, std::size_t dropped)
 {
   std::string why = "no surface was found at the points: the support may hold too few of them (use a larger k or "
                     "radius), or the iso level may lie beyond them";
-  if (voxel > 0.5 * extentOf (field.points ()).maxCoeff ())
+  if (voxel > 0.5 * extentOf (field).maxCoeff ())
     why = "no surface was found: the voxel of " + toText (voxel) + " is as large as the cloud, use a smaller one";
   else if (dropped > 0)
     why = "only small pieces of surface were found, which too few points support: are these points of a surface?";
@@ -260,7 +260,7 @@ chooseVoxelSize (const ImplicitField &field, const PolygonizerOptions &options)
   if (options.voxel_size > 0.0)
     return options.voxel_size;
   if (options.resolution > 0)
-    return extentOf (field.points ()).maxCoeff () / options.resolution;
+    return extentOf (field).maxCoeff () / options.resolution;
   return options.voxel_per_feature * field.featureSize ();
 }
 
@@ -274,7 +274,7 @@ polygonize (const ImplicitField &field, const PolygonizerOptions &options, Trian
   if (!outcome.ok ())
     return outcome;
   const double voxel = report.voxel_size = chooseVoxelSize (field, options);
-  const double cells = extentOf (field.points ()).maxCoeff () / voxel;
+  const double cells = extentOf (field).maxCoeff () / voxel;
   if (!(cells < SparseGrid::LIMIT))
     return {Status::GRID_TOO_FINE,
             "a voxel of " + toText (voxel) + " is too small for the extent of the cloud: use a larger voxel size"};

@@ -9,16 +9,16 @@
 namespace erkpa
 {
 
-/** \brief The moment matrix M(x) of eq. (17) in its gradient-reproducing (Hermite) form, and its solution.
+/** \brief The moment matrix M(x) of eq. (17) and its solution.
  *
  * Around x the field is the combination c·R of the reproduction vector R (eq. 15) that minimises
- *   Σ_i w_i [ (c·R(x_i) - λ_i)² + Σ_a (c·∂_aR(x_i) - n_i,a)² ],
+ *   Σ_i w_i (c·R(x_i) - λ_i)²  and, where gradients are fitted,  + Σ_i w_i Σ_a (c·∂_aR(x_i) - n_i,a)²,
  * in coordinates centred on x and scaled by the support radius. Its normal equations are M c = b with
  *   M = Σ_i w_i (R R^T + Σ_a ∂_aR ∂_aR^T),   b = Σ_i w_i (R λ_i + Σ_a ∂_aR n_i,a).
  * The paper writes M with B(x, x_i) on the right, which is not symmetric but gives the same shape functions.
  *
  * A term that the nodes do not determine (an enrichment whose support holds nodes on one side only, a square on
- * a flat patch) has a vanishing pivot. Each pivot that falls below a threshold is raised, the more the smaller it
+ * a flat patch) has a vanishing pivot. Each pivot that falls below a floor is raised, the more the smaller it
  * is: the term's coefficient then goes to zero continuously, and with it the term drops out without a jump in f.
  *
  * \tparam Size number of terms, or Eigen::Dynamic
@@ -43,32 +43,53 @@ public:
     return static_cast<int> (rhs_.size ());
   }
 
-  /** \brief Adds one node: R and ∂R (columns) at the node, its value λ and normal n, and its weight. */
+  /** \brief Adds the value λ of one node: R at the node, and its weight. */
   void
-  add (double weight, const Vector &R, const Gradients &G, double lambda, const Eigen::Vector3d &normal)
+  addValue (double weight, const Vector &R, double lambda)
   {
     const int n = size ();
     total_weight_ += weight;
     for (int j = 0; j < n; ++j)
     {
-      const double wr = weight * R[j], w0 = weight * G (j, 0), w1 = weight * G (j, 1), w2 = weight * G (j, 2);
+      const double wr = weight * R[j];
       for (int i = j; i < n; ++i)
-        moments_ (i, j) += wr * R[i] + w0 * G (i, 0) + w1 * G (i, 1) + w2 * G (i, 2);
-      rhs_[j] += wr * lambda + w0 * normal[0] + w1 * normal[1] + w2 * normal[2];
+        moments_ (i, j) += wr * R[i];
+      rhs_[j] += wr * lambda;
     }
   }
 
-  /** \brief M = L D L^T without pivoting, polynomials first, so that each pivot is what the nodes say about a term
-   * beyond the terms before it.
-   * \param[in] thresholds per term, the share of the total weight below which its pivot is raised
-   */
+  /** \brief Adds the gradient n of one node: ∂R (columns) at the node, and its weight. */
   void
-  factorize (const Vector &thresholds)
+  addGradient (double weight, const Gradients &G, const Eigen::Vector3d &normal)
   {
     const int n = size ();
     for (int j = 0; j < n; ++j)
     {
-      raisePivot (j, moments_ (j, j), thresholds[j] * total_weight_);
+      const double w0 = weight * G (j, 0), w1 = weight * G (j, 1), w2 = weight * G (j, 2);
+      for (int i = j; i < n; ++i)
+        moments_ (i, j) += w0 * G (i, 0) + w1 * G (i, 1) + w2 * G (i, 2);
+      rhs_[j] += w0 * normal[0] + w1 * normal[1] + w2 * normal[2];
+    }
+  }
+
+  /** \brief M_jj, before factorize(). */
+  double
+  moment (int j) const
+  {
+    return moments_ (j, j);
+  }
+
+  /** \brief M = L D L^T without pivoting, polynomials first, so that each pivot is what the nodes say about a term
+   * beyond the terms before it.
+   * \param[in] floors per term, below which its pivot is raised
+   */
+  void
+  factorize (const Vector &floors)
+  {
+    const int n = size ();
+    for (int j = 0; j < n; ++j)
+    {
+      raisePivot (j, moments_ (j, j), floors[j]);
       const double inverse = 1.0 / moments_ (j, j);
       for (int k = j + 1; k < n; ++k)
       {
@@ -147,7 +168,7 @@ private:
   {
     pivots_[j] = pivot;
     raise_[j] = slope_[j] = 0.0;
-    if (pivot >= floor)
+    if (pivot >= floor || !(floor > 0.0))
       return;
     const double t = std::max (pivot / floor, 1e-9);
     raise_[j] = floor * (1.0 - t) * (1.0 - t) / t;

@@ -18,14 +18,15 @@ namespace
 /** \brief Calls visit (neighbours sorted by distance, squared distances) for nodes spread over the cloud. */
 template <typename VisitT>
 void
-visitSample (const OrientedPoints &points, const NeighborSearch &search, std::size_t count, int k, VisitT visit)
+visitSample (const std::vector<Eigen::Vector3f> &positions, const NeighborSearch &search, std::size_t count, int k,
+             VisitT visit)
 {
-  const std::size_t step = std::max<std::size_t> (1, points.size () / count);
+  const std::size_t step = std::max<std::size_t> (1, positions.size () / count);
   std::vector<int> indices;
   std::vector<float> squared;
-  for (std::size_t i = 0; i < points.size (); i += step)
+  for (std::size_t i = 0; i < positions.size (); i += step)
   {
-    search.nearestK (points.positions[i], k, indices, squared);
+    search.nearestK (positions[i], k, indices, squared);
     std::vector<std::pair<float, int>> order;
     for (std::size_t j = 0; j < indices.size (); ++j)
       order.emplace_back (squared[j], indices[j]);
@@ -67,11 +68,11 @@ thicknessOf (const OrientedPoints &points, const std::vector<std::pair<float, in
 } // namespace
 
 double
-measureSpacing (const OrientedPoints &points, const NeighborSearch &search)
+measureSpacing (const std::vector<Eigen::Vector3f> &positions, const NeighborSearch &search)
 {
   constexpr int NEIGHBORS = 8;
   std::vector<double> spacings;
-  visitSample (points, search, 2000, NEIGHBORS + 1,
+  visitSample (positions, search, 2000, NEIGHBORS + 1,
                [&] (const auto &neighbors)
                {
                  const double others =
@@ -87,7 +88,7 @@ chooseSupportSize (const OrientedPoints &points, const NeighborSearch &search)
   constexpr double TILT = 0.01; // radians
   constexpr std::array<int, 7> SIZES{CLEAN_SUPPORT, 28, 40, 56, 80, 112, 160};
   std::array<std::vector<double>, SIZES.size ()> tilts;
-  visitSample (points, search, 400, SIZES.back (),
+  visitSample (points.positions, search, 400, SIZES.back (),
                [&] (const auto &neighbors)
                {
                  const double noise = thicknessOf (points, neighbors, 10);

@@ -4,6 +4,8 @@
 #include <erkpa/neighbor_search.h>
 #include <erkpa/oriented_points.h>
 
+#include <vector>
+
 namespace erkpa
 {
 
@@ -12,7 +14,7 @@ constexpr int CLEAN_SUPPORT = 20;
 
 /** \brief The side of the square that a node has to itself: median over the nodes, from the 8 nearest of each. */
 double
-measureSpacing (const OrientedPoints &points, const NeighborSearch &search);
+measureSpacing (const std::vector<Eigen::Vector3f> &positions, const NeighborSearch &search);
 
 /** \brief How many neighbours it takes to average the noise out.
  *

@@ -54,28 +54,72 @@ collect (const PointView &view, const SearchFactory &make_search, OrientedPoints
 
 /** \brief A radius far beyond the cloud makes one flat fit of everything, with zeros of rounding all over space. */
 Outcome
-checkRadius (const OrientedPoints &points, double radius)
+checkRadius (const ImplicitField &field)
 {
+  const double radius = field.typicalRadius ();
+  if (!(radius > 0.0))
+    return {Status::INVALID_SETTING, "the function of the support radius is not positive at the points"};
   float size = 0.0f;
-  for (const Eigen::Vector3f &p : points.positions)
+  for (const Eigen::Vector3f &p : field.points ().positions)
     size = std::max (size, p.norm ());
   constexpr double FAR = 20.0;
-  if (radius <= FAR * size)
+  if (radius <= FAR * static_cast<double> (size))
     return {};
   return {Status::INVALID_SETTING, "the support radius is far larger than the cloud, which fits in a ball of radius " +
                                        toText (size) + ": use a smaller one, or 0 to use k neighbours"};
+}
+
+Outcome
+checkField (const ImplicitField &field)
+{
+  if (!(field.spacing () > 0.0))
+    return {Status::TOO_FEW_POINTS, "the points lie closer together than floats can tell: scale the cloud up"};
+  return checkRadius (field);
+}
+
+/** \brief Radii of the points' own leave no room for another way to choose the support. */
+Outcome
+checkOptions (const PointView &view, const FieldOptions &options)
+{
+  Outcome outcome = ImplicitField::checkOptions (options);
+  const bool has_other =
+      options.k > 0 || options.radius > 0.0 || options.radius_ramp.axis >= 0 || options.radius_function;
+  if (outcome.ok () && has_other && !view.radii.empty ())
+    return {Status::INVALID_SETTING,
+            "the points have support radii of their own, which exclude k, a radius, a ramp and a "
+            "function of the support radius: give one of them"};
+  return outcome;
+}
+
+/** \brief The field over points with normals. */
+Outcome
+makeField (const std::shared_ptr<const OrientedPoints> &points, const NeighborSearch::ConstPtr &search,
+           const Options &options, ImplicitField::ConstPtr &field, Report &report, const ProgressCallback &progress)
+{
+  const StageClock clock (report.seconds_field);
+  const auto made = std::make_shared<ImplicitField> (points, search, options.field);
+  const bool by_nearest = made->options ().k > 0;
+  report.k = by_nearest ? made->options ().k : 0;
+  report.radius = by_nearest ? 0.0 : made->typicalRadius ();
+  report.spacing = made->spacing ();
+  Outcome outcome = checkField (*made);
+  if (outcome.ok () && options.field.interpolation == Interpolation::COLLOCATION)
+    outcome = interpolateNodes (*made, options.polygonizer.threads, report.collocation, progress);
+  if (outcome.ok ())
+    field = made;
+  return outcome;
 }
 
 } // namespace
 
 Outcome
 buildField (const PointView &view, const Options &options, const SearchFactory &make_search,
-            ImplicitField::ConstPtr &field, Report &report)
+            ImplicitField::ConstPtr &field, Report &report, const ProgressCallback &progress)
 {
   field.reset ();
   report = Report ();
   const StageClock total (report.seconds_total);
-  Outcome outcome = ImplicitField::checkOptions (options.field);
+  Outcome outcome = checkOptions (view, options.field);
   if (!outcome.ok ())
     return outcome;
   const auto points = std::make_shared<OrientedPoints> ();
@@ -90,18 +134,7 @@ buildField (const PointView &view, const Options &options, const SearchFactory &
     if (!outcome.ok ())
       return outcome;
   }
-  const StageClock clock (report.seconds_field);
-  outcome = checkRadius (*points, options.field.radius);
-  if (!outcome.ok ())
-    return outcome;
-  field = std::make_shared<ImplicitField> (points, search, options.field);
-  report.k = field->options ().radius > 0.0 ? 0 : field->options ().k;
-  report.radius = field->options ().radius;
-  report.spacing = field->spacing ();
-  if (report.spacing > 0.0)
-    return {};
-  field.reset ();
-  return {Status::TOO_FEW_POINTS, "the points lie closer together than floats can tell: scale the cloud up"};
+  return makeField (points, search, options, field, report, progress);
 }
 
 Outcome

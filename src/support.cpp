@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "support.h"
 
-#include <erkpa/kernel.h>
-
 #include <algorithm>
 #include <cmath>
 
@@ -16,40 +14,52 @@ constexpr double ROUNDING = 1e-5; // searches measure in float: this share of a 
 
 } // namespace
 
-Support::Support (const ImplicitField &field) : field_ (field) {}
+Support::Support (const ImplicitField &field)
+    : field_ (field), size_ (field.supportSize ()),
+      has_shapes_ (!field.points ().shapes.empty () || field.options ().flatten < 1.0)
+{
+}
 
 void
 Support::gather (const Eigen::Vector3d &center, double extent)
 {
   center_ = center;
-  if (field_.options ().radius > 0.0)
+  switch (size_.kind ())
   {
-    center_radius_ = field_.options ().radius;
-    search (center, center_radius_ + extent);
+    case SupportSize::Kind::NEAREST:
+      searchNearest (center, extent);
+      break;
+    case SupportSize::Kind::CONSTANT:
+      center_radius_ = size_.radiusAt (center);
+      search (center, center_radius_ + extent);
+      break;
+    case SupportSize::Kind::FUNCTION:
+      // Steeper functions than one in one outgrow this, see covers ().
+      center_radius_ = std::max (size_.radiusAt (center), 0.0);
+      search (center, center_radius_ + 2.0 * extent);
+      break;
+    case SupportSize::Kind::PER_NODE:
+      size_.nodesReaching (center, extent + field_.largestOffset (), candidates_);
+      break;
   }
-  else
-    searchNearest (center, extent);
   std::sort (candidates_.begin (), candidates_.end ());
-
-  const std::size_t n = candidates_.size ();
-  px_.resize (n);
-  py_.resize (n);
-  pz_.resize (n);
-  squared_.resize (n);
-  for (std::size_t i = 0; i < n; ++i)
-  {
-    const Eigen::Vector3f &p = field_.points ().positions[static_cast<std::size_t> (candidates_[i])];
-    px_[i] = p.x ();
-    py_[i] = p.y ();
-    pz_[i] = p.z ();
-  }
+  makeValuePoints ();
 }
 
+bool
+Support::covers (const Eigen::Vector3d &x) const
+{
+  return size_.kind () != SupportSize::Kind::FUNCTION || !((x - center_).norm () + size_.radiusAt (x) > reach_);
+}
+
+/** \brief All nodes whose value points may lie within \a reach. */
 void
 Support::search (const Eigen::Vector3d &center, double reach)
 {
-  const double rounding = ROUNDING * (reach + center.norm ());
-  field_.search ().withinRadius (center.cast<float> (), reach + rounding, candidates_, found_);
+  reach_ = reach;
+  const double all = reach + field_.largestOffset ();
+  const double rounding = ROUNDING * (all + center.norm ());
+  field_.search ().withinRadius (center.cast<float> (), all + rounding, candidates_, found_);
 }
 
 /** \brief Search as far as points of the ball reach to their k-th nodes.
@@ -60,9 +70,9 @@ Support::search (const Eigen::Vector3d &center, double reach)
 void
 Support::searchNearest (const Eigen::Vector3d &center, double extent)
 {
-  const std::size_t k = std::min (static_cast<std::size_t> (field_.options ().k), field_.points ().size ());
-  double guess =
-      1.2 * (center_radius_ > 0.0 ? std::min (center_radius_, 2.0 * field_.typicalRadius ()) : field_.typicalRadius ());
+  const std::size_t k = std::min (static_cast<std::size_t> (size_.k ()), field_.points ().size ());
+  const double typical = size_.typical ();
+  double guess = 1.2 * (center_radius_ > 0.0 ? std::min (center_radius_, 2.0 * typical) : typical);
   candidates_.clear ();
   constexpr double FARTHEST = 1e18; // its square is still a float
   for (; center.norm () < FARTHEST && guess > 0.0 && guess < FARTHEST; guess *= 2.0)
@@ -81,9 +91,40 @@ Support::searchNearest (const Eigen::Vector3d &center, double extent)
 }
 
 void
+Support::makeValuePoints ()
+{
+  const OrientedPoints &points = field_.points ();
+  const bool off_surface = field_.valuesPerNode () > 1;
+  const std::size_t n = candidates_.size () * static_cast<std::size_t> (field_.valuesPerNode ());
+  points_.clear ();
+  px_.resize (n);
+  py_.resize (n);
+  pz_.resize (n);
+  squared_.resize (n);
+  const auto add = [&] (int node, int side, const Eigen::Vector3d &position)
+  {
+    const std::size_t slot = points_.size ();
+    points_.push_back ({node, side, field_.nodeValue (node, side)});
+    px_[slot] = position[0];
+    py_[slot] = position[1];
+    pz_[slot] = position[2];
+  };
+  for (const int node : candidates_)
+  {
+    const Eigen::Vector3d position = points.positions[static_cast<std::size_t> (node)].cast<double> ();
+    add (node, 0, position);
+    if (!off_surface)
+      continue;
+    const Eigen::Vector3d normal = points.normals[static_cast<std::size_t> (node)].cast<double> ();
+    for (const int side : {1, -1})
+      add (node, side, position + side * field_.offsetOf (node) * normal);
+  }
+}
+
+void
 Support::measureDistances (const Eigen::Vector3d &x)
 {
-  const std::size_t n = candidates_.size ();
+  const std::size_t n = points_.size ();
   for (std::size_t i = 0; i < n; ++i)
   {
     const double dx = px_[i] - x[0], dy = py_[i] - x[1], dz = pz_[i] - x[2];
@@ -94,17 +135,28 @@ Support::measureDistances (const Eigen::Vector3d &x)
 void
 Support::measureRadius (const Eigen::Vector3d &x)
 {
-  radius_ = field_.options ().radius;
+  radius_ = 0.0;
   radius_gradient_.setZero ();
-  if (radius_ > 0.0 || squared_.empty ())
-    return;
+  if (size_.kind () == SupportSize::Kind::NEAREST)
+    measureNearestRadius (x);
+  else
+  {
+    radius_ = size_.radiusAt (x);
+    radius_gradient_ = size_.radiusGradientAt (x);
+  }
+  growth_ = 2.0 * radius_gradient_;
+}
+
+void
+Support::measureNearestRadius (const Eigen::Vector3d &x)
+{
   // ε is 1-Lipschitz: only candidates within the centre's radius and the way to x can be among the k nearest.
   const double bound = (center_radius_ + (x - center_).norm ()) + ROUNDING * (center_radius_ + x.norm ());
   scratch_.clear ();
-  for (const double squared : squared_)
-    if (squared <= bound * bound)
-      scratch_.push_back (squared);
-  const std::size_t k = std::min (static_cast<std::size_t> (field_.options ().k), scratch_.size ());
+  for (std::size_t i = 0; i < squared_.size (); ++i)
+    if (squared_[i] <= bound * bound && isOnSurface (i))
+      scratch_.push_back (squared_[i]);
+  const std::size_t k = std::min (static_cast<std::size_t> (size_.k ()), scratch_.size ());
   if (k == 0)
     return;
   std::nth_element (scratch_.begin (), scratch_.begin () + static_cast<std::ptrdiff_t> (k - 1), scratch_.end ());
@@ -112,49 +164,125 @@ Support::measureRadius (const Eigen::Vector3d &x)
   radius_ = std::sqrt (kth);
   const auto i = static_cast<std::size_t> (std::find (squared_.begin (), squared_.end (), kth) - squared_.begin ());
   if (radius_ > 0.0)
-    radius_gradient_ = (x - Eigen::Vector3d (px_[i], py_[i], pz_[i])) / radius_;
+    radius_gradient_ = (x - position (i)) / radius_;
 }
 
 double
 Support::quartileDistance () const
 {
-  if (nodes_.empty ())
-    return HUGE_VAL;
   scratch_.clear ();
   for (const SupportNode &node : nodes_)
-    scratch_.push_back (node.t);
+    if (isOnSurface (static_cast<std::size_t> (node.slot)))
+      scratch_.push_back (node.u.squaredNorm ());
+  if (scratch_.empty ())
+    return HUGE_VAL;
   const auto quartile = scratch_.begin () + static_cast<std::ptrdiff_t> (scratch_.size () / 4);
   std::nth_element (scratch_.begin (), quartile, scratch_.end ());
-  return *quartile * radius_;
+  return std::sqrt (*quartile) * radius_;
 }
 
 double
 Support::nearestDistance () const
 {
-  return squared_.empty () ? HUGE_VAL : std::sqrt (*std::min_element (squared_.begin (), squared_.end ()));
+  double nearest = HUGE_VAL;
+  for (std::size_t i = 0; i < squared_.size (); ++i)
+    if (squared_[i] < nearest && isOnSurface (i))
+      nearest = squared_[i];
+  return std::sqrt (nearest);
+}
+
+Eigen::Vector3d
+Support::stretched (int node, const Eigen::Vector3d &d) const
+{
+  const auto i = static_cast<std::size_t> (node);
+  if (!field_.points ().shapes.empty ())
+  {
+    const Eigen::Matrix3d shape = field_.points ().shapes[i].cast<double> ();
+    return shape.transpose () * (shape * d);
+  }
+  const double flatten = field_.options ().flatten;
+  const Eigen::Vector3d normal = field_.points ().normals[i].cast<double> ();
+  return d + (1.0 / (flatten * flatten) - 1.0) * normal.dot (d) * normal;
+}
+
+double
+Support::weightOf (std::size_t slot, double t) const
+{
+  const double weight = field_.kernel ().weight (t);
+  const auto &confidences = field_.points ().confidences;
+  return confidences.empty ()
+             ? weight
+             : weight * static_cast<double> (confidences[static_cast<std::size_t> (points_[slot].node)]);
+}
+
+Eigen::Vector3d
+Support::weightGradient (const SupportNode &node) const
+{
+  const int i = pointOf (node).node;
+  double slope = field_.kernel ().derivativeOverT (node.t);
+  if (!field_.points ().confidences.empty ())
+    slope *= static_cast<double> (field_.points ().confidences[static_cast<std::size_t> (i)]);
+  const Eigen::Vector3d d = has_shapes_ ? stretched (i, node.u) : node.u;
+  return slope * (-node.ratio * d - 0.5 * node.t * node.t * growth_);
 }
 
 bool
 Support::select (const Eigen::Vector3d &x)
 {
   measureDistances (x);
-  measureRadius (x);
   nodes_.clear ();
+  if (size_.kind () == SupportSize::Kind::PER_NODE)
+  {
+    weighByOwnRadii (x);
+    return nodes_.size () >= MIN_NODES;
+  }
+  measureRadius (x);
   const double limit = radius_ * radius_;
-  if (!(limit > 0.0))
+  if (!(radius_ > 0.0) || !std::isfinite (limit))
     return false;
   const double scale = 1.0 / radius_;
   for (std::size_t i = 0; i < squared_.size (); ++i)
   {
     if (squared_[i] >= limit)
       continue;
-    const double t = std::sqrt (squared_[i]) * scale;
-    const double weight = PaperKernel::weight (t);
+    const Eigen::Vector3d u = Eigen::Vector3d (px_[i] - x[0], py_[i] - x[1], pz_[i] - x[2]) * scale;
+    const double t = std::sqrt (has_shapes_ ? u.dot (stretched (points_[i].node, u)) : squared_[i] * scale * scale);
+    const double weight = t < 1.0 ? weightOf (i, t) : 0.0;
     if (weight > 0.0)
-      nodes_.push_back (
-          {static_cast<int> (i), Eigen::Vector3d (px_[i] - x[0], py_[i] - x[1], pz_[i] - x[2]) * scale, t, weight});
+      nodes_.push_back ({static_cast<int> (i), u, t, weight, 1.0});
   }
   return nodes_.size () >= std::min (MIN_NODES, field_.points ().size ());
+}
+
+/** \brief Nodes with radii ε_i; ε is their weighted mean. */
+void
+Support::weighByOwnRadii (const Eigen::Vector3d &x)
+{
+  growth_.setZero ();
+  double total = 0.0, sum = 0.0;
+  for (std::size_t i = 0; i < squared_.size (); ++i)
+  {
+    const auto own = static_cast<double> (field_.points ().radii[static_cast<std::size_t> (points_[i].node)]);
+    if (squared_[i] >= own * own)
+      continue;
+    const Eigen::Vector3d d = position (i) - x;
+    const double t = std::sqrt (has_shapes_ ? d.dot (stretched (points_[i].node, d)) : squared_[i]) / own;
+    const double weight = t < 1.0 ? weightOf (i, t) : 0.0;
+    if (!(weight > 0.0))
+      continue;
+    nodes_.push_back ({static_cast<int> (i), d, t, weight, 1.0 / (own * own)});
+    total += weight;
+    sum += weight * own;
+  }
+  radius_ = total > 0.0 ? sum / total : 0.0;
+  radius_gradient_.setZero ();
+  for (SupportNode &node : nodes_)
+  {
+    const double own = std::sqrt (1.0 / node.ratio);
+    node.u /= radius_;
+    node.ratio *= radius_ * radius_;
+    radius_gradient_ += weightGradient (node) * (own - radius_) / (total * radius_);
+  }
 }
 
 } // namespace erkpa

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include "support_size.h"
+
 #include <erkpa/implicit_field.h>
 
 #include <vector>
@@ -8,19 +10,29 @@
 namespace erkpa
 {
 
-/** \brief One node in the support of an evaluation point. */
+/** \brief A point that carries a value of the field: a node, or one of a node's off-surface points. */
+struct ValuePoint
+{
+  int node;      ///< index into the field's points
+  int side;      ///< 0 at the node, 1 and -1 at x_i ± κ n_i
+  double lambda; ///< λ_i, a length
+};
+
+/** \brief One value point in the support of an evaluation point. */
 struct SupportNode
 {
-  int slot;          ///< index into the gathered candidates
+  int slot;          ///< index into the gathered value points
   Eigen::Vector3d u; ///< (x_i - x) / ε
-  double t;          ///< |u|
-  double weight;     ///< w(t)
+  double t;          ///< distance in units of the node's support
+  double weight;     ///< w(t) Δx_i
+  double ratio;      ///< (ε / ε_i)²; 1 where the radius is one of the evaluation point
 };
 
 /** \brief The nodes that an evaluation point reaches, and how far it reaches: ε(x) and ∇ε(x).
  *
  * Candidates are gathered once for a ball and serve all points in it. They stay sorted by index, so that sums over
- * them do not depend on the ball they were gathered for.
+ * them do not depend on the ball they were gathered for. Where nodes have radii of their own, ε(x) is their weighted
+ * mean and only a scale of the coordinates.
  */
 class Support
 {
@@ -31,17 +43,33 @@ public:
   void
   gather (const Eigen::Vector3d &center, double extent);
 
-  /** \brief Select the nodes in the support of \a x, which must lie in the ball gathered for.
+  /** \brief Whether what was gathered is all that \a x reaches; only a radius that is a function can outgrow it. */
+  bool
+  covers (const Eigen::Vector3d &x) const;
+
+  /** \brief Select the nodes in the support of \a x, which must be covered.
    * \return false where too few nodes are in reach to define the field
    */
   bool
   select (const Eigen::Vector3d &x);
 
-  /** \brief Indices of the candidates in the field's points, ascending. */
-  const std::vector<int> &
-  candidates () const
+  /** \brief The value points gathered, by node. */
+  const std::vector<ValuePoint> &
+  points () const
   {
-    return candidates_;
+    return points_;
+  }
+
+  const ValuePoint &
+  pointOf (const SupportNode &node) const
+  {
+    return points_[static_cast<std::size_t> (node.slot)];
+  }
+
+  Eigen::Vector3d
+  position (std::size_t slot) const
+  {
+    return {px_[slot], py_[slot], pz_[slot]};
   }
 
   const std::vector<SupportNode> &
@@ -56,11 +84,23 @@ public:
     return radius_;
   }
 
+  /** \brief ∇ε(x). */
   const Eigen::Vector3d &
   radiusGradient () const
   {
     return radius_gradient_;
   }
+
+  /** \brief ε ∇ log ε_i², by which gradient terms gain weight over values: 2 ∇ε, or 0 for radii of the nodes' own. */
+  const Eigen::Vector3d &
+  growth () const
+  {
+    return growth_;
+  }
+
+  /** \brief ε ∇(w Δx_i) of a node with respect to x. */
+  Eigen::Vector3d
+  weightGradient (const SupportNode &node) const;
 
   /** \brief The distance within which a quarter of the support's nodes lie: small on the surface that the nodes
    * show, near ε away from it, and near ε too at a few stray nodes. */
@@ -82,22 +122,49 @@ private:
   searchNearest (const Eigen::Vector3d &center, double extent);
 
   void
+  makeValuePoints ();
+
+  void
   measureDistances (const Eigen::Vector3d &x);
 
   void
   measureRadius (const Eigen::Vector3d &x);
 
+  void
+  measureNearestRadius (const Eigen::Vector3d &x);
+
+  void
+  weighByOwnRadii (const Eigen::Vector3d &x);
+
+  /** \brief S^T S d of a node's support shape S: what its distance grows by. */
+  Eigen::Vector3d
+  stretched (int node, const Eigen::Vector3d &d) const;
+
+  double
+  weightOf (std::size_t slot, double t) const;
+
+  bool
+  isOnSurface (std::size_t slot) const
+  {
+    return points_[slot].side == 0;
+  }
+
   const ImplicitField &field_;
+  const SupportSize &size_;
+  bool has_shapes_;
   Eigen::Vector3d center_ = Eigen::Vector3d::Zero (); // of the ball gathered for
   double center_radius_ = 0.0;                        // ε there
+  double reach_ = 0.0;                                // how far around it all nodes are known
   std::vector<int> candidates_;
-  std::vector<double> px_, py_, pz_; // positions of the candidates
+  std::vector<ValuePoint> points_;
+  std::vector<double> px_, py_, pz_; // positions of the value points
   std::vector<double> squared_;      // squared distances from x
   mutable std::vector<double> scratch_;
   std::vector<float> found_;
   std::vector<SupportNode> nodes_;
   double radius_ = 0.0;
   Eigen::Vector3d radius_gradient_ = Eigen::Vector3d::Zero ();
+  Eigen::Vector3d growth_ = Eigen::Vector3d::Zero ();
 };
 
 } // namespace erkpa

@@ -172,7 +172,7 @@ SurfaceTracker::classify (const GridPoint &cell)
 void
 SurfaceTracker::seedFromNodes ()
 {
-  for (const Eigen::Vector3f &position : field_.points ().positions)
+  for (const Eigen::Vector3f &position : field_.surfacePositions ())
     addToFront (grid_.cellOf (position.cast<double> ()));
 }
 
@@ -194,7 +194,7 @@ SurfaceTracker::findCellNear (const GridPoint &cell, GridPoint &found) const
 void
 SurfaceTracker::seedFromProjections ()
 {
-  const auto &positions = field_.points ().positions;
+  const auto &positions = field_.surfacePositions ();
   cells_of_nodes_.assign (positions.size (), {NO_CELL, 0, 0});
   std::vector<std::size_t> away;
   for (std::size_t i = 0; i < positions.size (); ++i)

@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <erkpa/reconstruction.h>
+#include <erkpa/settings.h>
 
 #include <pcl/ModelCoefficients.h>
 #include <pcl/PolygonMesh.h>
 #include <pcl/point_types.h>
+#include <pcl/sample_consensus/model_types.h>
 #include <pcl/surface/reconstruction.h>
 
 #include <vector>
@@ -21,9 +22,10 @@ namespace erkpa
  * erkpa.setInputCloud (cloud);
  * erkpa.reconstruct (mesh);
  * \endcode
- * Every setting has a default that gives a good mesh. Sharp edges are made where planes given by addSharpEdge ()
- * cut the surface. Points without usable normals get estimated ones. Nothing is thrown across reconstruct: on
- * failure one PCL_ERROR names the input or setting, getStatus () tells the kind, and the output is empty.
+ * Every setting has a default that gives a good mesh; settings.h lists them. Sharp edges are made where planes given by
+ * addSharpEdge () cut the surface. Points without usable normals get estimated ones. Nothing is thrown across
+ * reconstruct: on failure one PCL_ERROR names the input or setting, getStatus () tells the kind, and the output is
+ * empty.
  *
  * P. Reuter, P. Joyot, J. Trunzler, T. Boubekeur, C. Schlick: Reconstructing Implicit Surfaces with Sharp Edges via
  * Enriched Reproducing Kernel Approximation, RR-1334-04, LaBRI, 2004.
@@ -31,7 +33,7 @@ namespace erkpa
  * \tparam PointNT a point type with x, y, z; normals, colour and intensity are used where the type has them
  */
 template <typename PointNT>
-class ERKPA : public pcl::SurfaceReconstruction<PointNT>
+class ERKPA : public pcl::SurfaceReconstruction<PointNT>, public Settings
 {
 public:
   using Ptr = pcl::shared_ptr<ERKPA<PointNT>>;
@@ -72,133 +74,27 @@ public:
     return field_;
   }
 
-  /** \brief The neighbours of the support: ε(x) is the distance to the k-th nearest point. At least 5;
-   * 0 (default) chooses k from the noise of the points. */
+  /** \brief Something about each point of the input cloud, one value per point; empty (default) for none. The fields of
+   * the cloud named by setRadiusField () and setConfidenceField () go first.
+   */
   void
-  setKSearch (int k)
+  setRadii (const std::vector<float> &radii)
   {
-    options_.field.k = k;
+    radii_ = radii;
   }
 
-  int
-  getKSearch () const
-  {
-    return options_.field.k;
-  }
-
-  /** \brief A constant support radius in the cloud's unit of length; 0 (default) uses k. */
+  /** \brief The weights of the points beside the kernel, the paper's Δx_i (eq. 13). */
   void
-  setRadiusSearch (double radius)
+  setConfidences (const std::vector<float> &confidences)
   {
-    options_.field.radius = radius;
+    confidences_ = confidences;
   }
 
-  double
-  getRadiusSearch () const
-  {
-    return options_.field.radius;
-  }
-
-  /** \brief What the field reproduces exactly; spherical by default. */
+  /** \brief The shapes of the points' supports: |S (x - x_i)| < radius, no singular value of S below 1. */
   void
-  setOrder (Order order)
+  setSupportShapes (const std::vector<Eigen::Matrix3f> &shapes)
   {
-    options_.field.order = order;
-  }
-
-  Order
-  getOrder () const
-  {
-    return options_.field.order;
-  }
-
-  /** \brief How the points constrain the field; Hermite by default. */
-  void
-  setConstraint (Constraint constraint)
-  {
-    options_.field.constraint = constraint;
-  }
-
-  Constraint
-  getConstraint () const
-  {
-    return options_.field.constraint;
-  }
-
-  /** \brief Side of a grid cell in the cloud's unit of length; 0 (default) takes the resolution or the spacing. */
-  void
-  setVoxelSize (double voxel_size)
-  {
-    options_.polygonizer.voxel_size = voxel_size;
-  }
-
-  double
-  getVoxelSize () const
-  {
-    return options_.polygonizer.voxel_size;
-  }
-
-  /** \brief Grid cells along the longest side of the cloud; 0 (default) follows the spacing of the points. */
-  void
-  setGridResolution (int resolution)
-  {
-    options_.polygonizer.resolution = resolution;
-  }
-
-  int
-  getGridResolution () const
-  {
-    return options_.polygonizer.resolution;
-  }
-
-  /** \brief The surface is f = iso_level; in the cloud's unit of length, positive outside. */
-  void
-  setIsoLevel (double iso_level)
-  {
-    options_.polygonizer.iso_level = iso_level;
-  }
-
-  double
-  getIsoLevel () const
-  {
-    return options_.polygonizer.iso_level;
-  }
-
-  /** \brief Number of threads; 0 (default) takes all processors. The result does not depend on it. */
-  void
-  setNumberOfThreads (int threads)
-  {
-    options_.normals.threads = options_.polygonizer.threads = threads;
-  }
-
-  int
-  getNumberOfThreads () const
-  {
-    return options_.polygonizer.threads;
-  }
-
-  /** \brief Where the sensor stood, for the sign of estimated normals; default: the cloud's sensor_origin_. */
-  void
-  setViewPoint (float x, float y, float z)
-  {
-    options_.normals.view_point = Eigen::Vector3d (x, y, z);
-    options_.normals.has_view_point = true;
-    use_sensor_origin_ = false;
-  }
-
-  void
-  getViewPoint (float &x, float &y, float &z) const
-  {
-    x = static_cast<float> (options_.normals.view_point.x ());
-    y = static_cast<float> (options_.normals.view_point.y ());
-    z = static_cast<float> (options_.normals.view_point.z ());
-  }
-
-  /** \brief Take the view point from the cloud again. */
-  void
-  useSensorOriginAsViewPoint ()
-  {
-    use_sensor_origin_ = true;
+    shapes_ = shapes;
   }
 
   /** \brief Make the surface sharp where it crosses a plane.
@@ -208,16 +104,31 @@ public:
   bool
   addSharpEdge (const pcl::ModelCoefficients &coefficients);
 
-  /** \brief Replace all sharp edges; on a bad one none is changed, and false is returned. */
+  /** \brief The same with another surface than a plane.
+   * \param[in] coefficients those of the model, as PCL's sample consensus gives them
+   * \param[in] model pcl::SACMODEL_PLANE, SACMODEL_SPHERE, SACMODEL_CYLINDER or SACMODEL_CONE, or one of their kin with
+   * the same coefficients (SACMODEL_NORMAL_PLANE, ...)
+   * \return false, with a PCL_ERROR, where they make no surface
+   */
+  bool
+  addSharpEdge (const pcl::ModelCoefficients &coefficients, pcl::SacModel model);
+
+  /** \brief The same with any surface; null is ignored. */
+  void
+  addSharpSurface (const SharpSurface::ConstPtr &surface);
+
+  /** \brief Replace all sharp edges by planes; on a bad one none is changed, and false is returned. */
   bool
   setSharpEdges (std::vector<pcl::ModelCoefficients> edges);
 
+  /** \brief The planes given. */
   const std::vector<pcl::ModelCoefficients> &
   getSharpEdges () const
   {
     return sharp_edges_;
   }
 
+  /** \brief Forget the sharp edges, planes and others. */
   void
   clearSharpEdges ()
   {
@@ -250,12 +161,6 @@ public:
    * surfaces are those of the options from then on, and getSharpEdges () knows none. */
   void
   setOptions (const Options &options);
-
-  const Options &
-  getOptions () const
-  {
-    return options_;
-  }
 
   /** \brief Called with the fraction done during long runs. */
   void
@@ -297,11 +202,14 @@ private:
   bool
   makeMesh (TriangleMesh &mesh);
 
-  PointView
-  viewOfInput () const;
+  Outcome
+  viewInput (PointView &view) const;
 
-  Options options_;
-  bool use_sensor_origin_ = true;
+  bool
+  addSharpEdge (const pcl::ModelCoefficients &coefficients, SurfaceModel model);
+
+  std::vector<float> radii_, confidences_;
+  std::vector<Eigen::Matrix3f> shapes_;
   std::vector<pcl::ModelCoefficients> sharp_edges_;
   ProgressCallback progress_;
 
@@ -312,7 +220,7 @@ private:
 
 /** \brief Reconstruct from a cloud whose fields are known only at run time (as loaded from a file).
  *
- * Uses x, y, z and, where present, normal_x/y/z, rgb or rgba, intensity.
+ * Uses x, y, z and, where present, normal_x/y/z, rgb or rgba, intensity, and the fields that options.points names.
  * \param[in] cloud FLOAT32 x, y, z
  * \param[in] options all settings; options.normals.view_point is where the sensor stood
  * \param[out] mesh empty on failure
@@ -323,6 +231,11 @@ private:
 Outcome
 reconstruct (const pcl::PCLPointCloud2 &cloud, const Options &options, pcl::PolygonMesh &mesh, Report &report,
              ImplicitField::ConstPtr *field = nullptr, const ProgressCallback &progress = {});
+
+/** \brief The same without a mesh: only the field, null on failure. */
+Outcome
+computeField (const pcl::PCLPointCloud2 &cloud, const Options &options, ImplicitField::ConstPtr &field, Report &report,
+              const ProgressCallback &progress = {});
 
 } // namespace erkpa
 

@@ -2,11 +2,14 @@
 #pragma once
 
 #include <erkpa/basis.h>
+#include <erkpa/kernel.h>
 #include <erkpa/neighbor_search.h>
 #include <erkpa/oriented_points.h>
 #include <erkpa/sharp_surface.h>
+#include <erkpa/space_warp.h>
 
 #include <cstddef>
+#include <functional>
 #include <limits>
 #include <memory>
 #include <vector>
@@ -15,21 +18,61 @@ namespace erkpa
 {
 
 struct Pencil;
+class SupportSize;
 
-/** \brief How the surface constrains the field at its nodes. */
+/** \brief How the nodes constrain the field. */
 enum class Constraint
 {
-  HERMITE ///< f = 0 and ∇f = n at every node, in the least-squares sense
+  HERMITE,    ///< f = 0 and ∇f = n at every node, in the least-squares sense
+  FUNCTIONAL, ///< the value of a node is that of its tangent plane: λ_i(x) = (x - x_i)·n_i (eq. 2)
+  OFFSURFACE  ///< f = 0 at x_i and f = ±κ at x_i ± κ n_i (section 2)
 };
 
-/** \brief Settings of the field. */
+/** \brief What a sharp surface adds to the reproduction vector. */
+enum class EnrichmentType
+{
+  KINK, ///< θH(θ): the gradient of f may jump (eq. 22)
+  JUMP  ///< H(θ): f itself may jump; for functional constraints, whose values jump across an edge
+};
+
+/** \brief Whether f = 0 holds at the nodes exactly (section 3.4). */
+enum class Interpolation
+{
+  NONE,       ///< the nodes are approximated
+  SINGULAR,   ///< interpolated by a kernel that is infinite at the node
+  COLLOCATION ///< interpolated by node values that make it so, from a linear system (eq. 26-27)
+};
+
+/** \brief The support radius at a point of the input's frame, in the input's unit of length. */
+using RadiusFunction = std::function<double (const Eigen::Vector3d &)>;
+
+/** \brief A support radius that changes linearly along an axis, over the extent of the nodes (paper, fig. 6c). */
+struct RadiusRamp
+{
+  int axis = -1;     ///< 0, 1, 2 = x, y, z; -1 = none
+  double from = 0.0; ///< radius at the nodes' lowest coordinate
+  double to = 0.0;   ///< radius at their highest
+};
+
+/** \brief Settings of the field. Of k, radius, radius_ramp and radius_function at most one may be given; radii of the
+ * nodes' own (OrientedPoints::radii) exclude them all. */
 struct FieldOptions
 {
   Order order = Order::SPHERICAL;              ///< what the field reproduces exactly
   Constraint constraint = Constraint::HERMITE; ///< what the nodes ask of the field
-  int k = 0;           ///< support radius = distance to the k-th nearest node, at least 5; 0 = chosen from the noise
-  double radius = 0.0; ///< constant support radius in the cloud's unit; 0 = use k
+  double offset = 0.2; ///< κ of OFFSURFACE, as a share of the support radius at the node; in (0, 1)
+  EnrichmentType enrichment = EnrichmentType::KINK;  ///< what sharp surfaces add
+  Interpolation interpolation = Interpolation::NONE; ///< whether the field passes through the nodes
+  KernelType kernel = KernelType::AUTOMATIC;         ///< how nodes are weighed
+  Kernel::ConstPtr user_kernel;                      ///< instead of \a kernel, where not null
+  double flatten = 1.0;   ///< a node's support reaches this share of the radius along its normal; in (0, 1], 1 = a ball
+  int k = 0;              ///< support radius = distance to the k-th nearest node, at least 5; 0 = chosen from the noise
+  double radius = 0.0;    ///< constant support radius in the cloud's unit; 0 = use k
+  RadiusRamp radius_ramp; ///< support radius along an axis
+  RadiusFunction radius_function;                     ///< support radius as a function of position; continuous
   std::vector<SharpSurface::ConstPtr> sharp_surfaces; ///< where the gradient of the field may jump
+  SpaceWarp::ConstPtr warp; ///< deforms the field: f (warp^-1 (x)); null = none. Nodes and sharp surfaces are given
+                            ///< undeformed
 };
 
 /** \brief The field and its gradient at one point. */
@@ -46,10 +89,11 @@ struct FieldSample
   }
 };
 
-/** \brief The share of one node in the field: f(x) = Σ φ_i λ_i + ψ_i·n_i (eq. 18, with the gradient terms). */
+/** \brief The share of one node in the field: f(x) = Σ φ_i λ_i + ψ_i·n_i (eq. 18, with the normals' terms). */
 struct ShapeFunction
 {
   int node = 0;                                   ///< index into the field's points
+  int side = 0;                                   ///< 1 or -1 at the off-surface points x_i ± κ n_i, else 0
   double phi = 0.0;                               ///< φ_i(x), weight of the node's value (eq. 19)
   Eigen::Vector3d psi = Eigen::Vector3d::Zero (); ///< ψ_i(x), weight of the node's normal, a length
 };
@@ -67,7 +111,8 @@ public:
 
   /** \param[in] points the nodes, with unit normals
    * \param[in] search finds the nodes; must know the same positions under the same indices
-   * \param[in] options settings that checkOptions accepts; k = 0 is settled here
+   * \param[in] options settings that checkOptions accepts; k = 0 is settled here. Collocation is not done here but by
+   * interpolateNodes (), see collocation.h
    */
   ImplicitField (std::shared_ptr<const OrientedPoints> points, NeighborSearch::ConstPtr search,
                  const FieldOptions &options);
@@ -116,7 +161,63 @@ public:
     return *search_;
   }
 
-  /** \brief Typical distance between neighbouring nodes: the side of the square a node has to itself. */
+  const Kernel &
+  kernel () const
+  {
+    return *kernel_;
+  }
+
+  /** \brief What settles the support radius. */
+  const SupportSize &
+  supportSize () const
+  {
+    return *support_size_;
+  }
+
+  /** \brief Points per node that carry a value: 1, or 3 with off-surface points. */
+  int
+  valuesPerNode () const
+  {
+    return options_.constraint == Constraint::OFFSURFACE ? 3 : 1;
+  }
+
+  /** \brief λ of a node (side 0) or its off-surface points (side 1 and -1), a length: 0 and ±κ, or as set. */
+  double
+  nodeValue (int node, int side = 0) const;
+
+  /** \brief κ of a node: how far its off-surface points are from it. */
+  double
+  offsetOf (int node) const
+  {
+    return static_cast<double> (offsets_[static_cast<std::size_t> (node)]);
+  }
+
+  /** \brief The largest of them; 0 without off-surface points. */
+  double
+  largestOffset () const
+  {
+    return largest_offset_;
+  }
+
+  /** \brief Give the nodes other values: \a values[valuesPerNode () * node + s], s = 0, 1, 2 for side 0, 1, -1. */
+  void
+  setNodeValues (std::vector<double> values);
+
+  /** \brief The nodes where the surface is: warped where the field is. Local frame. */
+  const std::vector<Eigen::Vector3f> &
+  surfacePositions () const
+  {
+    return options_.warp ? warped_positions_ : points_->positions;
+  }
+
+  /** \brief Finds the nodes by surfacePositions (). */
+  const NeighborSearch &
+  surfaceSearch () const
+  {
+    return options_.warp ? *warped_search_ : *search_;
+  }
+
+  /** \brief Typical distance between neighbouring nodes on the surface: the side of the square a node has to itself. */
   double
   spacing () const
   {
@@ -142,9 +243,19 @@ public:
   typicalRadius () const;
 
 private:
+  void
+  warpPositions ();
+
   std::shared_ptr<const OrientedPoints> points_;
   NeighborSearch::ConstPtr search_;
   FieldOptions options_;
+  Kernel::ConstPtr kernel_;
+  std::shared_ptr<const SupportSize> support_size_;
+  std::vector<float> offsets_; // κ of the nodes
+  double largest_offset_ = 0.0;
+  std::vector<double> values_; // empty: the constraint's own
+  std::vector<Eigen::Vector3f> warped_positions_;
+  NeighborSearch::ConstPtr warped_search_;
   std::shared_ptr<const std::vector<Pencil>> pencils_;
   double spacing_ = 0.0;
   double feature_size_ = 0.0;

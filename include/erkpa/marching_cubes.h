@@ -2,10 +2,10 @@
 #pragma once
 
 #include <erkpa/implicit_field.h>
+#include <erkpa/progress.h>
 #include <erkpa/triangle_mesh.h>
 
 #include <cstddef>
-#include <functional>
 
 namespace erkpa
 {
@@ -33,9 +33,6 @@ struct PolygonizerReport
   std::size_t support_nodes = 0;      ///< nodes in the supports of all evaluations together
   std::size_t dropped_components = 0; ///< pieces no data supported
 };
-
-/** \brief Called now and then with the fraction of the work done, 0 to 1, from the calling thread. */
-using ProgressCallback = std::function<void (double)>;
 
 /** \brief The side of the grid cells these options give for a field. */
 double

@@ -24,6 +24,11 @@ struct OrientedPoints
   int channels = 0;              ///< number of attributes of a point (3 for colour, 1 for intensity)
   std::vector<float> attributes; ///< channels values per point, point after point
 
+  // What a node may have of its own (Δx_i, size and shape of its support); empty where all are alike.
+  std::vector<float> confidences;      ///< weight of the node beside the kernel, the paper's Δx_i (eq. 13), positive
+  std::vector<float> radii;            ///< support radius of the node, input's unit of length, positive
+  std::vector<Eigen::Matrix3f> shapes; ///< S: the support is |S (x - x_i)| < radius; no singular value below 1
+
   std::size_t
   size () const
   {
@@ -40,6 +45,9 @@ struct PointView
   const float *normal = nullptr;             ///< normal_x of the first point, or null where the cloud has none
   int channels = 0;                          ///< attributes per point
   std::vector<float> attributes;             ///< channels values per point, point after point
+  std::vector<float> confidences;            ///< a value per point, or empty: OrientedPoints::confidences
+  std::vector<float> radii;                  ///< a value per point, or empty: OrientedPoints::radii
+  std::vector<Eigen::Matrix3f> shapes;       ///< a matrix per point, or empty: OrientedPoints::shapes
   const std::vector<int> *indices = nullptr; ///< points to use, or null for all
 };
 
@@ -50,6 +58,7 @@ struct PointCounts
   std::size_t used = 0;           ///< nodes of the field
   std::size_t not_finite = 0;     ///< dropped: a coordinate is NaN or infinite
   std::size_t duplicate = 0;      ///< dropped: an earlier point has the same coordinates
+  std::size_t no_confidence = 0;  ///< dropped: a confidence is given, and it is zero or less or not finite
   std::size_t without_normal = 0; ///< used, but their normal was missing, zero or NaN
 };
 
@@ -57,7 +66,8 @@ struct PointCounts
  *
  * Normals are scaled to unit length; a missing one is left zero and counted. Of points with the same
  * coordinates the first stays.
- * \param[in] view the cloud; its indices must be within it (else Status::BAD_INDICES)
+ * \param[in] view the cloud; its indices must be within it (else Status::BAD_INDICES), what is given per point must be
+ * given for each, radii must be positive, and shapes must keep their rule (else Status::INVALID_SETTING)
  * \param[out] points the nodes, in the order of the cloud
  * \param[out] counts what was kept and what was dropped
  */

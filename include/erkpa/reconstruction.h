@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <erkpa/collocation.h>
 #include <erkpa/implicit_field.h>
 #include <erkpa/marching_cubes.h>
 #include <erkpa/normals.h>
@@ -8,13 +9,22 @@
 #include <erkpa/triangle_mesh.h>
 
 #include <functional>
+#include <string>
 
 namespace erkpa
 {
 
+/** \brief Fields of the cloud that hold something about each point, by name; empty = none. */
+struct PointOptions
+{
+  std::string radius_field;     ///< the support radius of the point, in the cloud's unit of length, positive
+  std::string confidence_field; ///< how much the point counts, of any scale; points of zero or less are left out
+};
+
 /** \brief All settings of a reconstruction; every default of the library stands in these structs. */
 struct Options
 {
+  PointOptions points;
   NormalOptions normals;
   FieldOptions field;
   PolygonizerOptions polygonizer;
@@ -25,8 +35,9 @@ struct Report
 {
   PointCounts points;
   Orientation orientation = Orientation::NONE;
-  int k = 0;            ///< neighbours of the support in force; 0 with a constant radius
-  double radius = 0.0;  ///< constant support radius in force; 0 with k
+  int k = 0;           ///< neighbours of the support in force; 0 with a constant radius
+  double radius = 0.0; ///< constant support radius in force; 0 with k
+  CollocationReport collocation;
   double spacing = 0.0; ///< typical distance between neighbouring points
   PolygonizerReport polygonizer;
   MeshTopology topology;
@@ -34,7 +45,7 @@ struct Report
   std::size_t triangles = 0;
   double seconds_points = 0.0;      ///< gathering the points and building the search tree
   double seconds_normals = 0.0;     ///< estimating and orienting normals
-  double seconds_field = 0.0;       ///< settling the support
+  double seconds_field = 0.0;       ///< settling the support, collocation
   double seconds_polygonizer = 0.0; ///< meshing
   double seconds_total = 0.0;
 
@@ -57,10 +68,11 @@ using SearchFactory = std::function<NeighborSearch::ConstPtr (const OrientedPoin
  * \param[in] make_search the search to use, or empty for a KdTreeFLANN
  * \param[out] field the field; null on error
  * \param[in,out] report filled in
+ * \param[in] progress may be empty; called where the field is the result of a long computation
  */
 Outcome
 buildField (const PointView &view, const Options &options, const SearchFactory &make_search,
-            ImplicitField::ConstPtr &field, Report &report);
+            ImplicitField::ConstPtr &field, Report &report, const ProgressCallback &progress = {});
 
 /** \brief The second half: field -> mesh, in the input's frame. */
 Outcome

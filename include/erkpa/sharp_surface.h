@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <erkpa/space_warp.h>
 #include <erkpa/status.h>
 
 #include <Eigen/Core>
 
+#include <functional>
 #include <memory>
 #include <vector>
 
@@ -59,12 +61,39 @@ private:
   double offset_;
 };
 
-/** \brief A plane from coefficients a, b, c, d of any scale.
- * \param[in] coefficients four finite values, not all of a, b, c zero
- * \param[out] surface the plane; untouched on error
- * \return Status::INVALID_SETTING with the reason where the coefficients make no plane
+/** \brief A sharp surface from a function θ and its gradient. */
+SharpSurface::ConstPtr
+makeSharpFunction (std::function<double (const Eigen::Vector3d &)> theta,
+                   std::function<Eigen::Vector3d (const Eigen::Vector3d &)> theta_gradient);
+
+/** \brief A sharp surface seen through a map of space: θ(map (x)), for example a plane that is twisted.
+ * \param[in] surface the surface before the warp
+ * \param[in] back maps the space of the cloud to that of \a surface (the twist undone)
+ */
+SharpSurface::ConstPtr
+makeWarpedSharpSurface (SharpSurface::ConstPtr surface, SpaceWarp::ConstPtr back);
+
+/** \brief The surfaces that coefficients can describe, with the coefficients that PCL's models of them have. */
+enum class SurfaceModel
+{
+  PLANE,    ///< a, b, c, d of a x + b y + c z + d = 0, of any scale
+  SPHERE,   ///< center x, y, z, radius
+  CYLINDER, ///< point on the axis x, y, z, direction of the axis x, y, z, radius
+  CONE      ///< apex x, y, z, direction of the axis x, y, z, angle between axis and side in radians
+};
+
+/** \brief A sharp surface from coefficients; θ is the signed distance, positive outside (for a plane, where its normal
+ * points).
+ * \param[in] model what the coefficients describe
+ * \param[in] coefficients as SurfaceModel lists them; finite, directions not zero, radii positive, angle in (0, π/2)
+ * \param[out] surface untouched on error
+ * \return Status::INVALID_SETTING with the reason where the coefficients make no surface
  */
 Outcome
-makeSharpPlane (const std::vector<float> &coefficients, SharpSurface::ConstPtr &surface);
+makeSharpSurface (SurfaceModel model, const std::vector<float> &coefficients, SharpSurface::ConstPtr &surface);
+
+/** \brief The plane behind a sharp surface that is a plane or a warped one, and the warp; null where it is none. */
+const SharpPlane *
+planeBehind (const SharpSurface &surface, const SpaceWarp **warp = nullptr);
 
 } // namespace erkpa

@@ -17,6 +17,7 @@ enum class Status
   NO_NORMALS,      ///< normals are missing and could not be estimated
   GRID_TOO_FINE,   ///< the voxel is too small for the extent of the cloud
   NO_SURFACE,      ///< the field has no zero set at the data
+  NOT_CONVERGED,   ///< the values that make the field interpolate were not found
   INTERNAL_ERROR   ///< something below us failed (out of memory, a library's exception)
 };
 

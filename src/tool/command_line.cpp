@@ -19,6 +19,7 @@ namespace
 {
 
 constexpr const char *SYNTAX = "erkpa_reconstruct INPUT OUTPUT [options]";
+constexpr const char *FIELD_SYNTAX = "erkpa_reconstruct INPUT -evaluate QUERY.xyz OUT.txt [options]";
 
 /** \brief The value of -evaluate: two words, no more and no fewer, so that file names may follow. */
 class TwoFiles : public po::typed_value<std::vector<std::string>>
@@ -57,16 +58,43 @@ word (const char *name)
   return po::value<std::string> ()->value_name (name);
 }
 
+po::typed_value<std::vector<std::string>> *
+words (const char *name)
+{
+  return po::value<std::vector<std::string>> ()->value_name (name);
+}
+
+po::options_description
+describeSupport (const FieldOptions &field)
+{
+  po::options_description description;
+  description.add_options () //
+      ("k", word ("N"),
+       withDefault ("the support of the field reaches to the N-th nearest point", field.k, "chosen from the noise")
+           .c_str ())                                                                                              //
+      ("radius", word ("R"), withDefault ("constant support radius instead of k", field.radius, "use k").c_str ()) //
+      ("radius_ramp", word ("axis,from,to"),
+       "instead: a support radius that changes linearly along the axis x, y or z, from the lowest point to the highest "
+       "(default: none)") //
+      ("radius_field", word ("NAME"),
+       "instead: the field of the cloud that holds the support radius of each point (default: none)") //
+      ("flatten", word ("F"),
+       withDefault ("how far the support of a point reaches along its normal, as a share of the radius", field.flatten)
+           .c_str ()) //
+      ("confidence_field", word ("NAME"),
+       "the field of the cloud by which each point is weighed (default: none)") //
+      ("kernel", word ("NAME"),
+       withDefault (listNames (KERNELS) + ": how points are weighed by distance", nameOf (KERNELS, field.kernel),
+                    "the paper's, or wendland_c2 for collocation")
+           .c_str ());
+  return description;
+}
+
 po::options_description
 describeField (const FieldOptions &field)
 {
   po::options_description description;
   description.add_options () //
-      ("k", word ("N"),
-       withDefault ("the support of the field reaches to the N-th nearest point", field.k,
-                    "chosen from the noise")
-           .c_str ())                                                                                              //
-      ("radius", word ("R"), withDefault ("constant support radius instead of k", field.radius, "use k").c_str ()) //
       ("order", word ("NAME"),
        withDefault (listNames (ORDERS) + ": what the field reproduces exactly", nameOf (ORDERS, field.order))
            .c_str ()) //
@@ -74,9 +102,24 @@ describeField (const FieldOptions &field)
        withDefault (listNames (CONSTRAINTS) + ": what the points ask of the field",
                     nameOf (CONSTRAINTS, field.constraint))
            .c_str ()) //
-      ("sharp", po::value<std::vector<std::string>> ()->value_name ("a,b,c,d"),
-       "a sharp edge where the plane a x + b y + c z + d = 0 cuts the surface; may be repeated (default: "
-       "none)");
+      ("offset", word ("F"),
+       withDefault ("how far off-surface points are from theirs, as a share of the support radius", field.offset)
+           .c_str ()) //
+      ("interpolate", word ("NAME"),
+       withDefault (listNames (INTERPOLATIONS) + ": how the surface is made to pass through the points",
+                    nameOf (INTERPOLATIONS, field.interpolation))
+           .c_str ()) //
+      ("sharp", words ("a,b,c,d"),
+       "a sharp edge where the plane a x + b y + c z + d = 0 cuts the surface; may be repeated (default: none)") //
+      ("sharp_sphere", words ("x,y,z,r"), "the same with a sphere: center and radius")                           //
+      ("sharp_cylinder", words ("x,y,z,dx,dy,dz,r"),
+       "the same with a cylinder: point on the axis, direction of the axis, radius") //
+      ("sharp_cone", words ("x,y,z,dx,dy,dz,angle"),
+       "the same with a cone: apex, direction of the axis, angle between axis and side in radians") //
+      ("enrichment", word ("NAME"),
+       withDefault (listNames (ENRICHMENTS) + ": what sharp edges add to the field; jump is for functional constraints",
+                    nameOf (ENRICHMENTS, field.enrichment))
+           .c_str ());
   return description;
 }
 
@@ -101,7 +144,7 @@ describeMeshing (const PolygonizerOptions &polygonizer)
                     "all processors")
            .c_str ()) //
       ("evaluate", new TwoFiles,
-       "also write x y z f gx gy gz at the points of QUERY.xyz, nan where f is not defined (default: "
+       "write x y z f gx gy gz at the points of QUERY.xyz, nan where f is not defined (default: "
        "none)")                                                                                        //
       ("report", word ("FILE.json"), "also write what was done, and how long it took (default: none)") //
       ("help,h", "print this text, as -h does") ("version", "print the version");
@@ -112,6 +155,7 @@ po::options_description
 describe (const Options &defaults)
 {
   po::options_description description;
+  description.add (describeSupport (defaults.field));
   description.add (describeField (defaults.field)).add (describeMeshing (defaults.polygonizer));
   return description;
 }
@@ -136,32 +180,73 @@ ifGiven (const po::variables_map &variables, const char *name, TakeT take)
     take (OptionText{name, variables[name].as<std::string> ()});
 }
 
+/** \brief The sharp surfaces given by an option that may be repeated. */
 void
-takeSharpEdges (const std::vector<std::string> &texts, FieldOptions &field)
+takeSharpSurfaces (const po::variables_map &variables, const char *name, const char *form, SurfaceModel model,
+                   FieldOptions &field)
 {
-  for (const std::string &text : texts)
+  if (variables.count (name) == 0)
+    return;
+  for (const std::string &text : variables[name].as<std::vector<std::string>> ())
   {
-    const OptionText option{"sharp", text};
-    const std::vector<double> numbers = toNumbers (option, "a,b,c,d");
-    SharpSurface::ConstPtr plane;
-    const Outcome outcome = makeSharpPlane (std::vector<float> (numbers.begin (), numbers.end ()), plane);
+    const OptionText option{name, text};
+    const std::vector<double> numbers = toNumbers (option, form);
+    SharpSurface::ConstPtr surface;
+    const Outcome outcome = makeSharpSurface (model, std::vector<float> (numbers.begin (), numbers.end ()), surface);
     if (!outcome.ok ())
       option.refuse (outcome.message);
-    field.sharp_surfaces.push_back (plane);
+    field.sharp_surfaces.push_back (surface);
   }
 }
 
-void
-takeOptions (const po::variables_map &variables, CommandLine &line)
+RadiusRamp
+toRamp (const OptionText &option)
 {
-  constexpr int LEAST_K = 4; // as FieldOptions::k says
-  FieldOptions &field = line.options.field;
-  PolygonizerOptions &polygonizer = line.options.polygonizer;
-  NormalOptions &normals = line.options.normals;
+  const std::string form = "axis,from,to";
+  const std::size_t axis = std::string ("xyz").find (option.text.substr (0, 1));
+  if (axis > 2 || option.text.size () < 2 || option.text[1] != ',')
+    option.refuse ("give " + form + ", an axis x, y or z and two radii with commas between and no blanks");
+  RadiusRamp ramp;
+  ramp.axis = static_cast<int> (axis);
+  const std::vector<double> radii = toNumbers ({option.name, option.text.substr (2)}, "from,to");
+  ramp.from = radii[0];
+  ramp.to = radii[1];
+  return ramp;
+}
+
+void
+takeSupport (const po::variables_map &variables, Options &options)
+{
+  constexpr int LEAST_K = 5; // as FieldOptions::k says
+  FieldOptions &field = options.field;
   ifGiven (variables, "k", [&] (const OptionText &o) { field.k = toCount (o, LEAST_K); });
   ifGiven (variables, "radius", [&] (const OptionText &o) { field.radius = toLength (o); });
+  ifGiven (variables, "radius_ramp", [&] (const OptionText &o) { field.radius_ramp = toRamp (o); });
+  ifGiven (variables, "radius_field", [&] (const OptionText &o) { options.points.radius_field = o.text; });
+  ifGiven (variables, "confidence_field", [&] (const OptionText &o) { options.points.confidence_field = o.text; });
+  ifGiven (variables, "flatten", [&] (const OptionText &o) { field.flatten = toNumber (o); });
+  ifGiven (variables, "kernel", [&] (const OptionText &o) { field.kernel = toEnum (o, KERNELS); });
+}
+
+void
+takeField (const po::variables_map &variables, FieldOptions &field)
+{
   ifGiven (variables, "order", [&] (const OptionText &o) { field.order = toEnum (o, ORDERS); });
   ifGiven (variables, "constraint", [&] (const OptionText &o) { field.constraint = toEnum (o, CONSTRAINTS); });
+  ifGiven (variables, "offset", [&] (const OptionText &o) { field.offset = toNumber (o); });
+  ifGiven (variables, "interpolate", [&] (const OptionText &o) { field.interpolation = toEnum (o, INTERPOLATIONS); });
+  ifGiven (variables, "enrichment", [&] (const OptionText &o) { field.enrichment = toEnum (o, ENRICHMENTS); });
+  takeSharpSurfaces (variables, "sharp", "a,b,c,d", SurfaceModel::PLANE, field);
+  takeSharpSurfaces (variables, "sharp_sphere", "x,y,z,r", SurfaceModel::SPHERE, field);
+  takeSharpSurfaces (variables, "sharp_cylinder", "x,y,z,dx,dy,dz,r", SurfaceModel::CYLINDER, field);
+  takeSharpSurfaces (variables, "sharp_cone", "x,y,z,dx,dy,dz,angle", SurfaceModel::CONE, field);
+}
+
+void
+takeMeshing (const po::variables_map &variables, CommandLine &line)
+{
+  PolygonizerOptions &polygonizer = line.options.polygonizer;
+  NormalOptions &normals = line.options.normals;
   ifGiven (variables, "voxel", [&] (const OptionText &o) { polygonizer.voxel_size = toLength (o); });
   ifGiven (variables, "resolution", [&] (const OptionText &o) { polygonizer.resolution = toCount (o, 1); });
   ifGiven (variables, "iso", [&] (const OptionText &o) { polygonizer.iso_level = toNumber (o); });
@@ -173,8 +258,6 @@ takeOptions (const po::variables_map &variables, CommandLine &line)
              normals.has_view_point = true;
            });
   ifGiven (variables, "report", [&] (const OptionText &o) { line.report = o.text; });
-  if (variables.count ("sharp") > 0)
-    takeSharpEdges (variables["sharp"].as<std::vector<std::string>> (), field);
   if (variables.count ("evaluate") > 0)
   {
     const auto &files = variables["evaluate"].as<std::vector<std::string>> ();
@@ -193,20 +276,21 @@ refuseBoth (const po::variables_map &variables, const char *one, const char *oth
 void
 takeFileNames (const std::vector<std::string> &names, CommandLine &line)
 {
-  if (names.size () != 2)
+  const bool needs_mesh = line.query.empty ();
+  if (names.size () > 2 || names.size () < (needs_mesh ? 2 : 1))
     throw ToolError ((names.size () < 2 ? "a file name is missing" : "too many file names: " + names[2]) +
                      "; the syntax is " + SYNTAX + ", see -help");
   line.input = names[0];
-  line.output = names[1];
+  line.output = names.size () > 1 ? names[1] : "";
   if (!isReadable (line.input))
     throw ToolError ("cannot read " + line.input + ": the format is unknown; use one of " + readableFormats ());
-  if (!isWritable (line.output))
+  if (!line.output.empty () && !isWritable (line.output))
     throw ToolError ("cannot write " + line.output + ": the format is unknown; use one of " + writableFormats ());
   if (!line.query.empty () && !isReadable (line.query))
     throw ToolError ("option -evaluate: cannot read " + line.query + ": the format is unknown; use one of " +
                      readableFormats ());
-  const bool repeats =
-      line.report == line.output || line.values == line.output || (!line.report.empty () && line.report == line.values);
+  const bool repeats = (!line.output.empty () && (line.report == line.output || line.values == line.output)) ||
+                       (!line.report.empty () && line.report == line.values);
   if (repeats)
     throw ToolError ("OUTPUT, -report and -evaluate must not write the same file; give them different names");
 }
@@ -234,8 +318,16 @@ parseCommandLine (int argc, const char *const *argv)
     if (line.help || line.version)
       return line;
     refuseBoth (variables, "voxel", "resolution");
-    refuseBoth (variables, "k", "radius");
-    takeOptions (variables, line);
+    for (const char *one : {"k", "radius", "radius_ramp", "radius_field"})
+      for (const char *other : {"k", "radius", "radius_ramp", "radius_field"})
+        if (one != other)
+          refuseBoth (variables, one, other);
+    takeSupport (variables, line.options);
+    takeField (variables, line.options.field);
+    takeMeshing (variables, line);
+    const Outcome outcome = ImplicitField::checkOptions (line.options.field);
+    if (!outcome.ok ())
+      throw ToolError (outcome.message);
     takeFileNames (fileNames (parsed), line);
   }
   catch (const po::error &error)
@@ -252,6 +344,7 @@ helpText ()
   text << "Reconstruct a surface with sharp edges from a point cloud by enriched reproducing kernel "
           "approximation.\n"
        << "Syntax is: " << SYNTAX << "\n"
+       << "       or: " << FIELD_SYNTAX << ", without a mesh\n"
        << "  INPUT:  " << readableFormats () << "; points with or without normals\n"
        << "  OUTPUT: " << writableFormats () << "\n"
        << "  where options (with one dash or two) are:\n";

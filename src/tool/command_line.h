@@ -14,7 +14,7 @@ struct CommandLine
   bool help = false;
   bool version = false;
   std::string input;
-  std::string output;
+  std::string output; ///< empty: no mesh is wanted
   std::string query;  ///< -evaluate, first value
   std::string values; ///< -evaluate, second value
   std::string report; ///< -report

@@ -2,6 +2,7 @@
 #include "float_cloud.h"
 
 #include "point_fields.h"
+#include "tool_error.h"
 
 #include <algorithm>
 #include <array>
@@ -81,9 +82,19 @@ private:
   bool is_packed_;
 };
 
+/** \brief " x y z": the names of the fields of a cloud. */
+std::string
+namesOf (const pcl::PCLPointCloud2 &cloud)
+{
+  std::string names;
+  for (const Field &field : cloud.fields)
+    names += " " + field.name;
+  return names;
+}
+
 /** \brief The fields of \a cloud that are numbers, in the order of the result, whose layout is begun. */
 std::vector<FieldReader>
-takeNumbers (const pcl::PCLPointCloud2 &cloud, pcl::PCLPointCloud2 &result)
+takeNumbers (const pcl::PCLPointCloud2 &cloud, const std::vector<std::string> &others, pcl::PCLPointCloud2 &result)
 {
   std::vector<FieldReader> fields;
   const auto take = [&] (const Triple &triple, const std::string &prefix)
@@ -105,6 +116,16 @@ takeNumbers (const pcl::PCLPointCloud2 &cloud, pcl::PCLPointCloud2 &result)
     fields.push_back (intensity);
     appendField (result, "intensity", Field::FLOAT32);
   }
+  for (const std::string &name : others)
+  {
+    if (name.empty () || FieldReader (result, {name}).exists ())
+      continue;
+    const FieldReader other (cloud, {name});
+    if (!other.exists ())
+      throw ToolError ("the points have no field " + name + "; they have" + namesOf (cloud));
+    fields.push_back (other);
+    appendField (result, name, Field::FLOAT32);
+  }
   return fields;
 }
 
@@ -121,10 +142,10 @@ positionsOf (const pcl::PCLPointCloud2 &cloud)
 }
 
 pcl::PCLPointCloud2
-toFloatFields (const pcl::PCLPointCloud2 &cloud)
+toFloatFields (const pcl::PCLPointCloud2 &cloud, const std::vector<std::string> &others)
 {
   pcl::PCLPointCloud2 result;
-  const std::vector<FieldReader> numbers = takeNumbers (cloud, result);
+  const std::vector<FieldReader> numbers = takeNumbers (cloud, others, result);
   const ColourReader colour (cloud);
   if (colour.exists ())
     appendField (result, "rgb", Field::FLOAT32);

@@ -22,7 +22,22 @@ constexpr std::array<NamedValue<Order>, 4> ORDERS = {{{"constant", Order::CONSTA
                                                       {"spherical", Order::SPHERICAL},
                                                       {"quadratic", Order::QUADRATIC}}};
 
-constexpr std::array<NamedValue<Constraint>, 1> CONSTRAINTS = {{{"hermite", Constraint::HERMITE}}};
+constexpr std::array<NamedValue<Constraint>, 3> CONSTRAINTS = {
+    {{"hermite", Constraint::HERMITE}, {"functional", Constraint::FUNCTIONAL}, {"offsurface", Constraint::OFFSURFACE}}};
+
+constexpr std::array<NamedValue<EnrichmentType>, 2> ENRICHMENTS = {
+    {{"kink", EnrichmentType::KINK}, {"jump", EnrichmentType::JUMP}}};
+
+constexpr std::array<NamedValue<Interpolation>, 3> INTERPOLATIONS = {{{"none", Interpolation::NONE},
+                                                                      {"singular", Interpolation::SINGULAR},
+                                                                      {"collocation", Interpolation::COLLOCATION}}};
+
+constexpr std::array<NamedValue<KernelType>, 6> KERNELS = {{{"automatic", KernelType::AUTOMATIC},
+                                                            {"paper", KernelType::PAPER},
+                                                            {"wendland_c2", KernelType::WENDLAND_C2},
+                                                            {"wendland_c4", KernelType::WENDLAND_C4},
+                                                            {"gaussian", KernelType::GAUSSIAN},
+                                                            {"singular", KernelType::SINGULAR}}};
 
 constexpr std::array<NamedValue<Orientation>, 3> ORIENTATIONS = {
     {{"none", Orientation::NONE}, {"view_point", Orientation::VIEW_POINT}, {"propagation", Orientation::PROPAGATION}}};

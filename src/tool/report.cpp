@@ -63,11 +63,16 @@ writeReport (const CommandLine &line, const Report &report, const ToolTimes &tim
                     {"used", report.points.used},
                     {"not_finite", report.points.not_finite},
                     {"duplicate", report.points.duplicate},
+                    {"no_confidence", report.points.no_confidence},
                     {"without_normal", report.points.without_normal}};
   json["orientation"] = nameOf (ORIENTATIONS, report.orientation);
   json["k"] = report.k;
   json["radius"] = report.radius;
   json["spacing"] = report.spacing;
+  json["collocation"] = {{"unknowns", report.collocation.unknowns},
+                         {"nonzeros", report.collocation.nonzeros},
+                         {"iterations", report.collocation.iterations},
+                         {"residual", report.collocation.residual}};
   json["voxel_size"] = report.polygonizer.voxel_size;
   json["evaluations"] = report.polygonizer.evaluations;
   json["mean_nodes_per_evaluation"] = report.meanNodesPerEvaluation ();

@@ -75,7 +75,8 @@ private:
       queries_ = positionsOf (readCloud (line_.query).cloud);
     Step step ("Loading", line_.input);
     const RawCloud raw = readCloud (line_.input);
-    pcl::PCLPointCloud2 cloud = toFloatFields (raw.cloud);
+    const PointOptions &points = line_.options.points;
+    pcl::PCLPointCloud2 cloud = toFloatFields (raw.cloud, {points.radius_field, points.confidence_field});
     rounding_ = largestRounding (raw.cloud);
     NormalOptions &normals = line_.options.normals;
     if (!normals.has_view_point && raw.view_point)
@@ -90,15 +91,21 @@ private:
   void
   reconstruct (const pcl::PCLPointCloud2 &cloud)
   {
-    Step step ("Computing", "the surface");
+    const bool meshes = !line_.output.empty ();
+    Step step ("Computing", meshes ? "the surface" : "the field");
     {
       const QuietLibrary quiet;
       ProgressLine progress;
-      const Outcome outcome = erkpa::reconstruct (cloud, line_.options, mesh_, report_, &field_, progress.callback ());
+      const Outcome outcome =
+          meshes ? erkpa::reconstruct (cloud, line_.options, mesh_, report_, &field_, progress.callback ())
+                 : erkpa::computeField (cloud, line_.options, field_, report_, progress.callback ());
       if (!outcome.ok ())
         throw ToolError ("cannot reconstruct " + line_.input + ": " + outcome.message);
     }
-    step.done (report_.triangles, "triangles");
+    if (meshes)
+      step.done (report_.triangles, "triangles");
+    else
+      step.done (report_.points.used, "nodes");
     tell ();
   }
 
@@ -107,15 +114,22 @@ private:
   tell () const
   {
     const PointCounts &points = report_.points;
-    if (points.used < points.read)
+    if (points.no_confidence > 0)
+      print_info ("  left out %zu points of no confidence\n", points.no_confidence);
+    if (points.not_finite + points.duplicate > 0)
       print_info ("  left out %zu points that are not finite and %zu that repeat another\n", points.not_finite,
                   points.duplicate);
     const bool is_view_point = report_.orientation == Orientation::VIEW_POINT;
     if (points.without_normal > 0)
       print_info ("  estimated %zu normals, oriented %s\n", points.without_normal,
                   is_view_point ? "towards the view point" : "from neighbour to neighbour");
-    print_info ("  %zu vertices, %zu pieces, %zu boundary edges\n", report_.vertices, report_.topology.components,
-                report_.topology.boundary_edges);
+    const CollocationReport &collocation = report_.collocation;
+    if (collocation.unknowns > 0)
+      print_info ("  collocation of %zu values: largest miss %g of the support radius\n", collocation.unknowns,
+                  collocation.residual);
+    if (!line_.output.empty ())
+      print_info ("  %zu vertices, %zu pieces, %zu boundary edges\n", report_.vertices, report_.topology.components,
+                  report_.topology.boundary_edges);
     constexpr double TOLERABLE = 0.1; // of the spacing: beyond, the surface shows steps
     if (rounding_ > TOLERABLE * report_.spacing)
       print_warn ("%s: as floats the coordinates are off by up to %g; subtract an offset from them first\n",
@@ -134,9 +148,12 @@ private:
     };
     if (!line_.values.empty ())
       evaluate (newFile (line_.values));
-    Step step ("Saving", line_.output);
-    writeMesh (mesh_, line_.output, newFile (line_.output));
-    times_.write = step.done (mesh_.polygons.size (), "triangles");
+    if (!line_.output.empty ())
+    {
+      Step step ("Saving", line_.output);
+      writeMesh (mesh_, line_.output, newFile (line_.output));
+      times_.write = step.done (mesh_.polygons.size (), "triangles");
+    }
     times_.total = total_.toc () * 1e-3;
     if (!line_.report.empty ())
       writeReport (line_, report_, times_, newFile (line_.report));

@@ -3,15 +3,17 @@
 
 #include <erkpa/reconstruction.h>
 
+#include <pcl/PCLPointField.h>
 #include <pcl/PolygonMesh.h>
 #include <pcl/console/print.h>
 #include <pcl/conversions.h>
 #include <pcl/point_cloud.h>
 #include <pcl/point_types.h>
+#include <pcl/sample_consensus/model_types.h>
 #include <pcl/search/search.h>
 #include <pcl/type_traits.h>
 
-#include <limits>
+#include <cstdint>
 #include <string>
 #include <utility>
 #include <vector>
@@ -75,6 +77,25 @@ viewCloud (const pcl::PointCloud<PointT> &cloud)
   }
   return view;
 }
+
+/** \brief The memory of a cloud and the layout of its points. */
+struct CloudBytes
+{
+  std::vector<pcl::PCLPointField> fields;
+  const std::uint8_t *data;
+  std::size_t point_step;
+  std::size_t size;
+};
+
+/** \brief The values of a field by name, of any numeric type; nothing is done for an empty name.
+ * \return Status::INVALID_SETTING where the cloud has no such field
+ */
+Outcome
+readField (const CloudBytes &cloud, const std::string &name, std::vector<float> &values);
+
+/** \brief The surface whose coefficients a model of PCL's sample consensus gives; false where there is none. */
+bool
+surfaceModelOf (pcl::SacModel model, SurfaceModel &surface);
 
 /** \brief Neighbour queries through a search of PCL that the user chose.
  *

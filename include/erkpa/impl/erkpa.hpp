@@ -7,8 +7,10 @@
 #include <erkpa/erkpa.h>
 #include <erkpa/impl/cloud_adaptor.hpp>
 
+#include <pcl/common/io.h>
 #include <pcl/console/print.h>
 
+#include <cstdint>
 #include <exception>
 #include <utility>
 
@@ -41,12 +43,18 @@ ERKPA<PointNT>::guarded (StepT step)
 }
 
 template <typename PointNT>
-PointView
-ERKPA<PointNT>::viewOfInput () const
+Outcome
+ERKPA<PointNT>::viewInput (PointView &view) const
 {
-  PointView view = viewCloud (*input_);
+  view = viewCloud (*input_);
   view.indices = use_indices_ && !fake_indices_ ? indices_.get () : nullptr;
-  return view;
+  view.radii = radii_;
+  view.confidences = confidences_;
+  view.shapes = shapes_;
+  const auto *data = reinterpret_cast<const std::uint8_t *> (input_->points.data ());
+  const CloudBytes bytes{pcl::getFields<PointNT> (), data, sizeof (PointNT), input_->size ()};
+  Outcome outcome = readField (bytes, options_.points.radius_field, view.radii);
+  return outcome.ok () ? readField (bytes, options_.points.confidence_field, view.confidences) : outcome;
 }
 
 template <typename PointNT>
@@ -65,7 +73,10 @@ ERKPA<PointNT>::makeField ()
   SearchFactory make_search;
   if (tree_)
     make_search = [this] (const OrientedPoints &points) { return makePclSearch<PointNT> (tree_, points); };
-  Outcome outcome = buildField (viewOfInput (), options_, make_search, field_, report_);
+  PointView view;
+  Outcome outcome = viewInput (view);
+  if (outcome.ok ())
+    outcome = buildField (view, options_, make_search, field_, report_, progress_);
   if (outcome.ok ())
     reportPoints (getClassName (), report_, options_);
   return outcome;
@@ -124,18 +135,46 @@ ERKPA<PointNT>::computeField ()
 
 template <typename PointNT>
 bool
-ERKPA<PointNT>::addSharpEdge (const pcl::ModelCoefficients &coefficients)
+ERKPA<PointNT>::addSharpEdge (const pcl::ModelCoefficients &coefficients, SurfaceModel model)
 {
   SharpSurface::ConstPtr surface;
-  Outcome outcome = makeSharpPlane (coefficients.values, surface);
+  Outcome outcome = makeSharpSurface (model, coefficients.values, surface);
   if (!outcome.ok ())
   {
     PCL_ERROR ("[%s::addSharpEdge] %s.\n", getClassName ().c_str (), outcome.message.c_str ());
     return false;
   }
-  sharp_edges_.push_back (coefficients);
-  options_.field.sharp_surfaces.push_back (surface);
+  if (model == SurfaceModel::PLANE)
+    sharp_edges_.push_back (coefficients);
+  addSharpSurface (surface);
   return true;
+}
+
+template <typename PointNT>
+bool
+ERKPA<PointNT>::addSharpEdge (const pcl::ModelCoefficients &coefficients)
+{
+  return addSharpEdge (coefficients, SurfaceModel::PLANE);
+}
+
+template <typename PointNT>
+bool
+ERKPA<PointNT>::addSharpEdge (const pcl::ModelCoefficients &coefficients, pcl::SacModel model)
+{
+  SurfaceModel kind = SurfaceModel::PLANE;
+  if (surfaceModelOf (model, kind))
+    return addSharpEdge (coefficients, kind);
+  PCL_ERROR ("[%s::addSharpEdge] the model %d is none of plane, sphere, cylinder and cone.\n", getClassName ().c_str (),
+             static_cast<int> (model));
+  return false;
+}
+
+template <typename PointNT>
+void
+ERKPA<PointNT>::addSharpSurface (const SharpSurface::ConstPtr &surface)
+{
+  if (surface)
+    options_.field.sharp_surfaces.push_back (surface);
 }
 
 template <typename PointNT>

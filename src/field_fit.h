@@ -1,0 +1,248 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "enrichment.h"
+#include "moment_system.h"
+#include "support.h"
+
+#include <cmath>
+#include <vector>
+
+namespace erkpa
+{
+
+/** \brief The fit of the nodes in one support, and what it says at the support's centre x: f, ∇f, φ_i and ψ_i.
+ *
+ * Works in coordinates u = (y - x) / ε. What a node asks for depends on the constraint: the value λ_i, and in Hermite
+ * form the gradient n_i as well; or Shen's functional value λ_i(x) = λ_i + (x - x_i)·n_i (eq. 2). The constant basis
+ * has no gradient to fit: it takes the functional value for the Hermite constraint, too.
+ *
+ * \tparam BasisT polynomial part of the reproduction vector
+ * \tparam Size number of terms with the enrichment, or Eigen::Dynamic
+ */
+template <typename BasisT, int Size, int MaxSize>
+class FieldFit
+{
+public:
+  using System = MomentSystem<Size, MaxSize>;
+  using Vector = typename System::Vector;
+  using Gradients = typename System::Gradients;
+
+  FieldFit (const OrientedPoints &points, Constraint constraint, const Support &support, const Enrichment &enrichment)
+      : points_ (points), fits_gradients_ (constraint == Constraint::HERMITE && BasisT::SIZE > 1),
+        functional_ (constraint == Constraint::FUNCTIONAL || (constraint == Constraint::HERMITE && BasisT::SIZE == 1)),
+        support_ (support), enrichment_ (enrichment), system_ (BasisT::SIZE + enrichment.size ()), R_ (system_.size ()),
+        G_ (system_.size (), 3), floors_ (system_.size ())
+  {
+    for (const SupportNode &node : support_.nodes ())
+    {
+      evaluateTerms (node);
+      system_.addValue (node.weight, R_, lambda (node));
+      if (fits_gradients_)
+        system_.addGradient (node.weight / node.ratio, G_, normalOf (node));
+    }
+    setFloors ();
+    system_.factorize (floors_);
+    evaluateTermsAtCenter ();
+    shape_ = system_.solve (R_);
+  }
+
+  /** \brief f(x) = ε R(x)·M^-1 b (eq. 16, 18). */
+  double
+  value () const
+  {
+    return support_.radius () * shape_.dot (system_.rhs ());
+  }
+
+  /** \brief ∇f(x): of R, of the weights and the radius, and of the raised pivots. */
+  Eigen::Vector3d
+  gradient ()
+  {
+    evaluateTermsAtCenter ();
+    const Vector c = system_.solve (system_.rhs ());
+    Eigen::Vector3d result = G_.transpose () * c;
+    // d(R·M^-1 b) = a·(db - dM c), a = M^-1 R: the residuals of the fit, weighted by ∇w. Then the share of the
+    // gradient terms, which grows with ε².
+    for (const SupportNode &node : support_.nodes ())
+    {
+      evaluateTerms (node);
+      double residual = shape_.dot (R_) * (lambda (node) - c.dot (R_));
+      if (fits_gradients_)
+      {
+        const double of_gradients = (G_.transpose () * shape_).dot (normalOf (node) - G_.transpose () * c) / node.ratio;
+        residual += of_gradients;
+        result += support_.growth () * (node.weight * of_gradients);
+      }
+      result += support_.weightGradient (node) * residual;
+      if (functional_)
+        result += node.weight * shape_.dot (R_) * normalOf (node); // ∇λ_i(x) = n_i
+    }
+    return result - gradientOfRaises (c);
+  }
+
+  /** \brief φ_i and ψ_i of all nodes in the support (eq. 19). */
+  void
+  shapeFunctions (std::vector<ShapeFunction> &functions)
+  {
+    for (const SupportNode &node : support_.nodes ())
+    {
+      evaluateTerms (node);
+      ShapeFunction function;
+      function.node = support_.pointOf (node).node;
+      function.side = support_.pointOf (node).side;
+      function.phi = node.weight * shape_.dot (R_);
+      if (functional_)
+        function.psi = -support_.radius () * function.phi * node.u;
+      else if (fits_gradients_)
+        function.psi = support_.radius () * node.weight / node.ratio * (G_.transpose () * shape_);
+      functions.push_back (function);
+    }
+  }
+
+private:
+  Eigen::Vector3d
+  normalOf (const SupportNode &node) const
+  {
+    return points_.normals[static_cast<std::size_t> (support_.pointOf (node).node)].cast<double> ();
+  }
+
+  double
+  lambda (const SupportNode &node) const
+  {
+    const double lambda = support_.pointOf (node).lambda / support_.radius ();
+    return functional_ ? lambda - node.u.dot (normalOf (node)) : lambda;
+  }
+
+  /** \brief R and ∂R at a node (eq. 15, 25). */
+  void
+  evaluateTerms (const SupportNode &node)
+  {
+    BasisT::evaluate (node.u, R_, G_);
+    Eigen::Vector3d slope;
+    for (int e = 0; e < enrichment_.size (); ++e)
+    {
+      enrichment_.atNode (e, node.slot, support_.radius (), R_[BasisT::SIZE + e], slope);
+      G_.row (BasisT::SIZE + e) = slope.transpose ();
+    }
+  }
+
+  void
+  evaluateTermsAtCenter ()
+  {
+    BasisT::evaluate (Eigen::Vector3d::Zero (), R_, G_);
+    Eigen::Vector3d slope;
+    for (int e = 0; e < enrichment_.size (); ++e)
+    {
+      enrichment_.atPoint (e, support_.radius (), R_[BasisT::SIZE + e], slope);
+      G_.row (BasisT::SIZE + e) = slope.transpose ();
+    }
+  }
+
+  int
+  degree (int term) const
+  {
+    return term < BasisT::SIZE ? BasisT::degree (term) : enrichment_.degree ();
+  }
+
+  /** \brief Whether the floor of a term is a share of its own moment; else it is one of the total weight.
+   *
+   * Without gradients an enrichment counts as undetermined where the polynomials vanish with it on all nodes, as on a
+   * perfect edge, and not where only few nodes lie beyond its surface: there the paper's method takes it as it is.
+   */
+  bool
+  hasFloorOfItsOwn (int term) const
+  {
+    return term >= BasisT::SIZE && !fits_gradients_;
+  }
+
+  /** \brief The share of the weight below which a term counts as undetermined.
+   *
+   * An enrichment with gradients: a smaller one keeps it exact up to fewer nodes beyond its surface, a larger one fades
+   * it over a longer way; on the edges of a box |f| was measured to stay below a third of the share, in units of ε.
+   * Functional values say nothing about the slope but through the thickness of the nodes, which below 1 % of ε (a
+   * share of 1e-4) is as likely noise.
+   */
+  double
+  shareOf (int term) const
+  {
+    constexpr double DETERMINED[] = {0.0, 1e-10, 1e-4};
+    constexpr double BY_THICKNESS[] = {0.0, 1e-4, 1e-4};
+    constexpr double OF_ENRICHMENT = 2e-5, OF_OWN_MOMENT = 1e-8;
+    if (term < BasisT::SIZE)
+      return (functional_ ? BY_THICKNESS : DETERMINED)[degree (term)];
+    return hasFloorOfItsOwn (term) ? OF_OWN_MOMENT : OF_ENRICHMENT;
+  }
+
+  void
+  setFloors ()
+  {
+    for (int j = 0; j < system_.size (); ++j)
+      floors_[j] = shareOf (j) * (hasFloorOfItsOwn (j) ? system_.moment (j) : system_.totalWeight ());
+  }
+
+  /** \brief Σ_j a_j c_j ∇ρ_j over the raised pivots.
+   *
+   * ρ_j depends on x through its pivot and its floor. pivot_j = v^T M v with v the residual of term j, so
+   * ∇pivot_j = v^T ∇M v + Σ_(k<j) v_k² ∇ρ_k. All is taken in the frame of x; a term of degree p scales with ε^p.
+   */
+  Eigen::Vector3d
+  gradientOfRaises (const Vector &c)
+  {
+    Eigen::Vector3d sum = Eigen::Vector3d::Zero ();
+    std::vector<Eigen::Vector3d> of_raise (static_cast<std::size_t> (system_.size ()), sum);
+    const Eigen::Vector3d &scale = support_.radiusGradient (); // ∇ε / ε in units of 1/ε
+    for (int j = 0; j < system_.size (); ++j)
+    {
+      if (!(system_.raise (j) > 0.0))
+        continue;
+      const Vector v = system_.residualOfTerm (j);
+      const double power = 2.0 * degree (j);
+      Eigen::Vector3d of_pivot, of_floor;
+      gradientsOfPivot (j, v, of_pivot, of_floor);
+      of_pivot -= power * system_.pivot (j) * scale;
+      if (hasFloorOfItsOwn (j))
+        of_floor -= power * floors_[j] * scale;
+      for (int k = 0; k < j; ++k)
+        of_pivot += v[k] * v[k] * of_raise[static_cast<std::size_t> (k)];
+      // ρ is homogeneous of degree one in pivot and floor: ∂ρ/∂floor = (ρ - ρ' pivot) / floor.
+      const double by_floor = (system_.raise (j) - system_.raiseSlope (j) * system_.pivot (j)) / floors_[j];
+      of_raise[static_cast<std::size_t> (j)] =
+          system_.raiseSlope (j) * of_pivot + by_floor * of_floor + power * system_.raise (j) * scale;
+      sum += shape_[j] * c[j] * of_raise[static_cast<std::size_t> (j)];
+    }
+    return sum;
+  }
+
+  /** \brief The parts of ∇pivot_j and of the gradient of its floor that come from the weights. */
+  void
+  gradientsOfPivot (int j, const Vector &v, Eigen::Vector3d &of_pivot, Eigen::Vector3d &of_floor)
+  {
+    of_pivot.setZero ();
+    of_floor.setZero ();
+    for (const SupportNode &node : support_.nodes ())
+    {
+      evaluateTerms (node);
+      const double height = v.dot (R_);
+      const Eigen::Vector3d change = support_.weightGradient (node);
+      of_pivot += change * (height * height);
+      of_floor += change * (hasFloorOfItsOwn (j) ? shareOf (j) * R_[j] * R_[j] : shareOf (j));
+      if (!fits_gradients_)
+        continue;
+      const double slopes = (G_.transpose () * v).squaredNorm () / node.ratio;
+      of_pivot += change * slopes + support_.growth () * (node.weight * slopes);
+    }
+  }
+
+  const OrientedPoints &points_;
+  bool fits_gradients_; // Hermite
+  bool functional_;     // eq. (2)
+  const Support &support_;
+  const Enrichment &enrichment_;
+  System system_;
+  Vector R_;      // terms at the node or point last visited
+  Gradients G_;   // their gradients
+  Vector floors_; // of the pivots
+  Vector shape_;  // M^-1 R(x)
+};
+
+} // namespace erkpa
