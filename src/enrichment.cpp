@@ -67,6 +67,12 @@ findPencils (const std::vector<SharpSurface::ConstPtr> &surfaces, double toleran
 Enrichment::Enrichment (const ImplicitField &field)
     : field_ (field), jumps_ (field.options ().enrichment == EnrichmentType::JUMP)
 {
+  for (const SharpSurface::ConstPtr &surface : field.options ().sharp_surfaces)
+  {
+    const SpaceWarp *warp = nullptr;
+    const bool is_linear = planeBehind (*surface, &warp) != nullptr && warp == nullptr;
+    reversible_.push_back (jumps_ || (is_linear && field.options ().order != Order::CONSTANT) ? 1 : 0);
+  }
 }
 
 void
@@ -147,12 +153,29 @@ Enrichment::select (const Support &support, const Eigen::Vector3d &x)
       continue;
     const SharpSurface &surface = *field_.options ().sharp_surfaces[static_cast<std::size_t> (near.surface)];
     near.at_point = {surface.theta (position), surface.thetaGradient (position)};
-    terms_.push_back ({static_cast<int> (i), -1, 1.0, 1.0});
+    addTerm (static_cast<int> (i), -1, 1.0, 1.0);
   }
   if (terms_.size () < 3)
     return;
   for (const Pencil &pencil : near_pencils_)
     addCornerTerms (pencil);
+}
+
+bool
+Enrichment::isReversible (int near) const
+{
+  return near < 0 || reversible_[static_cast<std::size_t> (near_[static_cast<std::size_t> (near)].surface)] != 0;
+}
+
+/** \brief Adds the term that is not zero where all its scaled θ are positive, or negative if x is among those. */
+void
+Enrichment::addTerm (int first, int second, double scale_a, double scale_b)
+{
+  const auto theta = [this] (int near) { return near_[static_cast<std::size_t> (near)].at_point.value; };
+  const bool holds_x = scale_a * theta (first) >= 0.0 && (second < 0 || scale_b * theta (second) >= 0.0);
+  const bool reverse = holds_x && isReversible (first) && isReversible (second);
+  const double sign = reverse ? -1.0 : 1.0;
+  terms_.push_back ({first, second, sign * scale_a, sign * scale_b, reverse});
 }
 
 void
@@ -162,10 +185,10 @@ Enrichment::addCornerTerms (const Pencil &pencil)
   const int c = activeIndex (pencil.surfaces[2]);
   if (a < 0 || b < 0 || c < 0 || size () + 1 + (jumps_ ? 1 : 0) > MAX_TERMS)
     return;
-  terms_.push_back ({a, b, pencil.scale_a, pencil.scale_b});
+  addTerm (a, b, pencil.scale_a, pencil.scale_b);
   // The six sectors around the line have six indicators: 1, H(a), H(b), H(c), and two products.
   if (jumps_)
-    terms_.push_back ({b, c, 1.0, 1.0});
+    addTerm (b, c, 1.0, 1.0);
 }
 
 void
@@ -181,7 +204,7 @@ Enrichment::evaluate (const Term &term, const Theta &a, const Theta *b, double r
   }
   value = 0.0;
   gradient.setZero ();
-  if (!(height >= 0.0)) // H(0) = 1, eq. (23)
+  if (!(height > 0.0) && (term.open || height < 0.0))
     return;
   value = jumps_ ? 1.0 : height / radius;
   if (!jumps_)

@@ -28,7 +28,9 @@ findPencils (const std::vector<SharpSurface::ConstPtr> &surfaces, double toleran
 /** \brief The terms that sharp surfaces add to the reproduction vector, and those of the corners: θH(θ) (eq. 22), at a
  * pencil min (a⁺, b⁺); or, where the field may jump, H(θ), at a pencil H(a)H(b) and H(b)H(c).
  *
- * A surface is active at x where the support holds nodes on either side of it (paper, section 3.3).
+ * A surface is active at x where the support holds nodes on either side of it (paper, section 3.3). Where θH(θ) and
+ * -θH(-θ) differ by a polynomial of the basis, the one is taken that is zero at x: the term then takes up what lies
+ * beyond the sharp surface and leaves the value at x to the polynomials, which is kinder to terms that drop out.
  */
 class Enrichment
 {
@@ -80,6 +82,7 @@ private:
   {
     int first, second;
     double scale_a, scale_b;
+    bool open; ///< whether the side on which it is not zero lacks its boundary: H(0) = 1 (eq. 23) seen from behind
   };
 
   struct NearSurface
@@ -96,15 +99,23 @@ private:
   int
   activeIndex (int surface) const;
 
+  /** \brief Whether the terms of a near surface (< 0: none) may be seen from either side: 1 or θ is in the basis. */
+  bool
+  isReversible (int near) const;
+
   void
-  addCornerTerms (const Pencil &pencil);
+  addTerm (int first, int second, double scale_a, double scale_b);
 
   void
   evaluate (const Term &term, const Theta &a, const Theta *b, double radius, double &value,
             Eigen::Vector3d &gradient) const;
 
+  void
+  addCornerTerms (const Pencil &pencil);
+
   const ImplicitField &field_;
   bool jumps_;
+  std::vector<char> reversible_; // per sharp surface
   std::vector<Pencil> near_pencils_;
   std::vector<NearSurface> near_;
   std::size_t near_count_ = 0; // near_ keeps its memory from ball to ball

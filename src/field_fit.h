@@ -3,6 +3,7 @@
 
 #include "enrichment.h"
 #include "moment_system.h"
+#include "pivot_floor.h"
 #include "support.h"
 
 #include <cmath>
@@ -77,7 +78,7 @@ public:
       if (functional_)
         result += node.weight * shape_.dot (R_) * normalOf (node); // ∇λ_i(x) = n_i
     }
-    return result - gradientOfRaises (c);
+    return result - gradientOfRaises (c) - turnOfRaises (shape_, c) - turnOfRaises (c, shape_);
   }
 
   /** \brief φ_i and ψ_i of all nodes in the support (eq. 19). */
@@ -144,40 +145,28 @@ private:
     return term < BasisT::SIZE ? BasisT::degree (term) : enrichment_.degree ();
   }
 
-  /** \brief Whether the floor of a term is a share of its own moment; else it is one of the total weight.
-   *
-   * Without gradients an enrichment counts as undetermined where the polynomials vanish with it on all nodes, as on a
-   * perfect edge, and not where only few nodes lie beyond its surface: there the paper's method takes it as it is.
-   */
-  bool
-  hasFloorOfItsOwn (int term) const
+  PivotFloor
+  floorOf (int term) const
   {
-    return term >= BasisT::SIZE && !fits_gradients_;
-  }
-
-  /** \brief The share of the weight below which a term counts as undetermined.
-   *
-   * An enrichment with gradients: a smaller one keeps it exact up to fewer nodes beyond its surface, a larger one fades
-   * it over a longer way; on the edges of a box |f| was measured to stay below a third of the share, in units of ε.
-   * Functional values say nothing about the slope but through the thickness of the nodes, which below 1 % of ε (a
-   * share of 1e-4) is as likely noise.
-   */
-  double
-  shareOf (int term) const
-  {
-    constexpr double DETERMINED[] = {0.0, 1e-10, 1e-4};
-    constexpr double BY_THICKNESS[] = {0.0, 1e-4, 1e-4};
-    constexpr double OF_ENRICHMENT = 2e-5, OF_OWN_MOMENT = 1e-8;
-    if (term < BasisT::SIZE)
-      return (functional_ ? BY_THICKNESS : DETERMINED)[degree (term)];
-    return hasFloorOfItsOwn (term) ? OF_OWN_MOMENT : OF_ENRICHMENT;
+    return term < BasisT::SIZE ? floorOfPolynomial (degree (term), functional_) : floorOfEnrichment (fits_gradients_);
   }
 
   void
   setFloors ()
   {
+    for (const SupportNode &node : support_.nodes ())
+      centroid_ += node.weight / system_.totalWeight () * node.u;
+    for (const SupportNode &node : support_.nodes ())
+      spread_ += node.weight * (node.u - centroid_).squaredNorm ();
+    const double weight = system_.totalWeight ();
     for (int j = 0; j < system_.size (); ++j)
-      floors_[j] = shareOf (j) * (hasFloorOfItsOwn (j) ? system_.moment (j) : system_.totalWeight ());
+    {
+      const PivotFloor floor = floorOf (j);
+      double reference = floor.of == PivotFloor::Of::MOMENT ? system_.moment (j) : weight;
+      for (int p = 0; p < degree (j) && floor.of == PivotFloor::Of::SPREAD; ++p)
+        reference *= spread_ / weight;
+      floors_[j] = floor.share * reference;
+    }
   }
 
   /** \brief Σ_j a_j c_j ∇ρ_j over the raised pivots.
@@ -199,8 +188,8 @@ private:
       const double power = 2.0 * degree (j);
       Eigen::Vector3d of_pivot, of_floor;
       gradientsOfPivot (j, v, of_pivot, of_floor);
-      of_pivot -= power * system_.pivot (j) * scale;
-      if (hasFloorOfItsOwn (j))
+      of_pivot += 2.0 * turnOfRaises (v, v) - power * system_.pivot (j) * scale;
+      if (floorOf (j).of != PivotFloor::Of::WEIGHT)
         of_floor -= power * floors_[j] * scale;
       for (int k = 0; k < j; ++k)
         of_pivot += v[k] * v[k] * of_raise[static_cast<std::size_t> (k)];
@@ -210,6 +199,27 @@ private:
           system_.raiseSlope (j) * of_pivot + by_floor * of_floor + power * system_.raise (j) * scale;
       sum += shape_[j] * c[j] * of_raise[static_cast<std::size_t> (j)];
     }
+    return sum;
+  }
+
+  /** \brief Σ_i a_i H_i (ρ∘b) over the squares R_i with Hessian H_i and the linear terms' ρ and b.
+   *
+   * ρ stands on the coefficients in the frame of x. As x moves, squares turn into squares and linear terms, so where
+   * linear terms are raised the frame itself moves f.
+   */
+  Eigen::Vector3d
+  turnOfRaises (const Vector &a, const Vector &b)
+  {
+    Eigen::Vector3d sum = Eigen::Vector3d::Zero ();
+    if constexpr (BasisT::SIZE > LinearBasis::SIZE)
+      for (int axis = 0; axis < 3; ++axis)
+      {
+        if (!(system_.raise (1 + axis) > 0.0))
+          continue;
+        BasisT::evaluate (Eigen::Vector3d::Unit (axis), R_, G_); // a row of H_i each, as G is linear in u
+        for (int i = LinearBasis::SIZE; i < BasisT::SIZE; ++i)
+          sum += a[i] * system_.raise (1 + axis) * b[1 + axis] * G_.row (i).transpose ();
+      }
     return sum;
   }
 
@@ -225,12 +235,30 @@ private:
       const double height = v.dot (R_);
       const Eigen::Vector3d change = support_.weightGradient (node);
       of_pivot += change * (height * height);
-      of_floor += change * (hasFloorOfItsOwn (j) ? shareOf (j) * R_[j] * R_[j] : shareOf (j));
+      of_floor += change * floorSlope (j, node);
       if (!fits_gradients_)
         continue;
       const double slopes = (G_.transpose () * v).squaredNorm () / node.ratio;
       of_pivot += change * slopes + support_.growth () * (node.weight * slopes);
     }
+  }
+
+  /** \brief What the floor of term j gains with the weight of a node, whose terms are in R_. */
+  double
+  floorSlope (int j, const SupportNode &node) const
+  {
+    const PivotFloor floor = floorOf (j);
+    const double weight = system_.totalWeight (), p = degree (j);
+    switch (floor.of)
+    {
+      case PivotFloor::Of::MOMENT:
+        return floor.share * R_[j] * R_[j];
+      case PivotFloor::Of::SPREAD:
+        return floors_[j] * ((1.0 - p) / weight + p * (node.u - centroid_).squaredNorm () / spread_);
+      case PivotFloor::Of::WEIGHT:
+        break;
+    }
+    return floor.share;
   }
 
   const OrientedPoints &points_;
@@ -239,10 +267,12 @@ private:
   const Support &support_;
   const Enrichment &enrichment_;
   System system_;
-  Vector R_;      // terms at the node or point last visited
-  Gradients G_;   // their gradients
-  Vector floors_; // of the pivots
-  Vector shape_;  // M^-1 R(x)
+  Vector R_;                                            // terms at the node or point last visited
+  Gradients G_;                                         // their gradients
+  Vector floors_;                                       // of the pivots
+  Eigen::Vector3d centroid_ = Eigen::Vector3d::Zero (); // of the weighted nodes
+  double spread_ = 0.0;                                 // Σ w |u - centroid|²
+  Vector shape_;                                        // M^-1 R(x)
 };
 
 } // namespace erkpa

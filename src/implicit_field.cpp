@@ -52,6 +52,8 @@ ImplicitField::ImplicitField (std::shared_ptr<const OrientedPoints> points, Neig
                               const FieldOptions &options)
     : points_ (std::move (points)), search_ (std::move (search)), options_ (options), kernel_ (kernelOf (options))
 {
+  if (options_.order == Order::AUTOMATIC)
+    options_.order = options_.constraint == Constraint::FUNCTIONAL ? Order::LINEAR : Order::SPHERICAL;
   const int k = chooseSupportSize (*points_, *search_);
   const double spacing = measureSpacing (points_->positions, *search_);
   if (options_.k == 0 && SupportSize::kindOf (*points_, options_) == SupportSize::Kind::NEAREST)
@@ -114,6 +116,8 @@ ImplicitField::checkOptions (const FieldOptions &options)
   if (!(options.flatten > 0.0 && options.flatten <= 1.0))
     return bad ("flatten is the share of the radius that supports reach along the normals: use a value above 0, at "
                 "most 1");
+  if (options.enrichment == EnrichmentType::JUMP && options.constraint != Constraint::FUNCTIONAL)
+    return bad ("the jump enrichment is for functional constraints, whose values jump across an edge: use the kink");
   const bool is_singular = options.kernel == KernelType::SINGULAR && !options.user_kernel;
   if (is_singular && options.interpolation != Interpolation::NONE)
     return bad ("the singular kernel interpolates by itself: leave interpolation at none, or take another kernel");

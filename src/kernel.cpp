@@ -108,7 +108,7 @@ public:
   }
 
 private:
-  static constexpr double CUT_OFF = 1e-5;
+  static constexpr double CUT_OFF = 1e-6;
 
   ConstPtr kernel_;
 };

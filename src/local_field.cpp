@@ -123,6 +123,7 @@ LocalField::evaluateUnwarped (const Eigen::Vector3d &x, Task task)
     case Order::LINEAR:
       fit<LinearBasis> (task);
       break;
+    case Order::AUTOMATIC: // settled by the field
     case Order::SPHERICAL:
       fit<SphericalBasis> (task);
       break;

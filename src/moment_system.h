@@ -168,7 +168,9 @@ private:
   {
     pivots_[j] = pivot;
     raise_[j] = slope_[j] = 0.0;
-    if (pivot >= floor || !(floor > 0.0))
+    if (!(floor > 0.0) && !(pivot > 0.0))
+      pivot = 1.0; // a term that is zero at all nodes: its coefficient is zero whatever its pivot
+    if (pivot >= floor)
       return;
     const double t = std::max (pivot / floor, 1e-9);
     raise_[j] = floor * (1.0 - t) * (1.0 - t) / t;

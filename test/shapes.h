@@ -151,17 +151,28 @@ plane (const Eigen::Vector4d &coefficients)
   return std::make_shared<erkpa::SharpPlane> (coefficients.head<3> () / length, coefficients[3] / length);
 }
 
-/** \brief The field of samples; the test stops where it cannot be made. */
+inline std::shared_ptr<erkpa::OrientedPoints>
+points (const Samples &samples)
+{
+  const auto result = std::make_shared<erkpa::OrientedPoints> ();
+  for (std::size_t i = 0; i < samples.size (); ++i)
+  {
+    result->positions.emplace_back (samples.positions[i].cast<float> ());
+    result->normals.emplace_back (samples.normals[i].cast<float> ());
+  }
+  return result;
+}
+
+inline std::shared_ptr<erkpa::ImplicitField>
+field (const std::shared_ptr<erkpa::OrientedPoints> &points, const erkpa::FieldOptions &options = {})
+{
+  return std::make_shared<erkpa::ImplicitField> (points, erkpa::makeKdTreeSearch (points->positions), options);
+}
+
 inline std::shared_ptr<erkpa::ImplicitField>
 field (const Samples &samples, const erkpa::FieldOptions &options = {})
 {
-  const auto points = std::make_shared<erkpa::OrientedPoints> ();
-  for (std::size_t i = 0; i < samples.size (); ++i)
-  {
-    points->positions.emplace_back (samples.positions[i].cast<float> ());
-    points->normals.emplace_back (samples.normals[i].cast<float> ());
-  }
-  return std::make_shared<erkpa::ImplicitField> (points, erkpa::makeKdTreeSearch (points->positions), options);
+  return field (points (samples), options);
 }
 
 template <typename PointT>

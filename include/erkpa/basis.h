@@ -9,6 +9,7 @@ namespace erkpa
 /** \brief Functions the field reproduces exactly: the paper's "n-th order" and the spheres between them. */
 enum class Order
 {
+  AUTOMATIC, ///< spherical; linear for functional constraints, which say too little about squares on a surface
   CONSTANT,  ///< 1
   LINEAR,    ///< 1, x, y, z
   SPHERICAL, ///< 1, x, y, z, x²+y²+z²: exact on planes and spheres

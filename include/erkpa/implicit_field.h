@@ -58,7 +58,7 @@ struct RadiusRamp
  * nodes' own (OrientedPoints::radii) exclude them all. */
 struct FieldOptions
 {
-  Order order = Order::SPHERICAL;              ///< what the field reproduces exactly
+  Order order = Order::AUTOMATIC;              ///< what the field reproduces exactly
   Constraint constraint = Constraint::HERMITE; ///< what the nodes ask of the field
   double offset = 0.2; ///< κ of OFFSURFACE, as a share of the support radius at the node; in (0, 1)
   EnrichmentType enrichment = EnrichmentType::KINK;  ///< what sharp surfaces add
@@ -148,7 +148,7 @@ public:
     return *points_;
   }
 
-  /** \brief The settings in force (k settled). */
+  /** \brief The settings in force (k and order settled). */
   const FieldOptions &
   options () const
   {

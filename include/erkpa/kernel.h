@@ -49,7 +49,7 @@ enum class KernelType
 Kernel::ConstPtr
 makeKernel (KernelType type);
 
-/** \brief A kernel over t²: infinite at the node (cut off at t = 1e-5), so that the field interpolates. */
+/** \brief A kernel over t²: infinite at the node (cut off at t = 1e-6), so that the field interpolates. */
 Kernel::ConstPtr
 makeSingular (Kernel::ConstPtr kernel);
 

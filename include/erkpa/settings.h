@@ -93,7 +93,7 @@ public:
     return options_.points.confidence_field;
   }
 
-  /** \brief What the field reproduces exactly; spherical by default. */
+  /** \brief What the field reproduces exactly; automatic by default: spherical, for functional constraints linear. */
   void
   setOrder (Order order)
   {

@@ -96,7 +96,8 @@ describeField (const FieldOptions &field)
   po::options_description description;
   description.add_options () //
       ("order", word ("NAME"),
-       withDefault (listNames (ORDERS) + ": what the field reproduces exactly", nameOf (ORDERS, field.order))
+       withDefault (listNames (ORDERS) + ": what the field reproduces exactly", nameOf (ORDERS, field.order),
+                    "spherical, or linear for functional constraints")
            .c_str ()) //
       ("constraint", word ("NAME"),
        withDefault (listNames (CONSTRAINTS) + ": what the points ask of the field",

@@ -17,7 +17,8 @@ struct NamedValue
   EnumT value;
 };
 
-constexpr std::array<NamedValue<Order>, 4> ORDERS = {{{"constant", Order::CONSTANT},
+constexpr std::array<NamedValue<Order>, 5> ORDERS = {{{"automatic", Order::AUTOMATIC},
+                                                      {"constant", Order::CONSTANT},
                                                       {"linear", Order::LINEAR},
                                                       {"spherical", Order::SPHERICAL},
                                                       {"quadratic", Order::QUADRATIC}}};

@@ -1,0 +1,277 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// Discontinuity surfaces of every kind, and the field in a warped space.
+#include "field_tests.h"
+
+#include <erkpa/reconstruction.h>
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <string>
+
+using erkpa::SharpSurface;
+using erkpa::SpaceWarp;
+using erkpa::SurfaceModel;
+
+namespace
+{
+
+SharpSurface::ConstPtr
+surfaceOf (SurfaceModel model, const std::vector<float> &coefficients)
+{
+  SharpSurface::ConstPtr surface;
+  EXPECT_TRUE (erkpa::makeSharpSurface (model, coefficients, surface).ok ());
+  return surface;
+}
+
+/** \brief Turns space about the z axis, by an angle that grows with z. */
+SpaceWarp::ConstPtr
+twist (double per_length)
+{
+  const auto turn = [per_length] (double z) { return Eigen::AngleAxisd (per_length * z, Vector3d::UnitZ ()); };
+  return erkpa::makeSpaceWarp ([turn] (const Vector3d &x) { return Vector3d (turn (x.z ()) * x); },
+                               [turn, per_length] (const Vector3d &x)
+                               {
+                                 Eigen::Matrix3d jacobian = turn (x.z ()).toRotationMatrix ();
+                                 jacobian.col (2) += per_length * Vector3d::UnitZ ().cross (turn (x.z ()) * x);
+                                 return jacobian;
+                               });
+}
+
+/** \brief Bends the z axis into a circle of radius 1 / curvature around an axis parallel to y. */
+SpaceWarp::ConstPtr
+bend (double curvature)
+{
+  return erkpa::makeSpaceWarp (
+      [curvature] (const Vector3d &x)
+      {
+        const double r = 1.0 / curvature - x.x (), angle = curvature * x.z ();
+        return Vector3d (1.0 / curvature - r * std::cos (angle), x.y (), r * std::sin (angle));
+      },
+      [curvature] (const Vector3d &x)
+      {
+        const double r = 1.0 / curvature - x.x (), angle = curvature * x.z ();
+        Eigen::Matrix3d jacobian;
+        jacobian << std::cos (angle), 0.0, curvature * r * std::sin (angle), 0.0, 1.0, 0.0, -std::sin (angle), 0.0,
+            curvature * r * std::cos (angle);
+        return jacobian;
+      });
+}
+
+const Vector3d HALF (0.4, 0.3, 1.0);
+
+FieldOptions
+withBisectors (const SpaceWarp::ConstPtr &back = nullptr)
+{
+  FieldOptions options = optionsOf (Order::AUTOMATIC, 0, 0.16);
+  for (const Eigen::Vector4d &bisector : shapes::boxBisectors (HALF))
+  {
+    const SharpSurface::ConstPtr plane = shapes::plane (bisector);
+    options.sharp_surfaces.push_back (back ? erkpa::makeWarpedSharpSurface (plane, back) : plane);
+  }
+  return options;
+}
+
+/** \brief Points along the edges of the box, corners included. */
+std::vector<Vector3d>
+edgePoints ()
+{
+  std::vector<Vector3d> points;
+  for (int axis = 0; axis < 3; ++axis)
+    for (const double sb : {-1.0, 1.0})
+      for (const double sc : {-1.0, 1.0})
+        for (double t = -1.0; t <= 1.001; t += 0.1)
+        {
+          Vector3d p;
+          p[axis] = t * HALF[axis];
+          p[(axis + 1) % 3] = sb * HALF[(axis + 1) % 3];
+          p[(axis + 2) % 3] = sc * HALF[(axis + 2) % 3];
+          points.push_back (p);
+        }
+  return points;
+}
+
+/** \brief Points on a box that is warped, with the normals of the warped surface. */
+shapes::Samples
+warped (const shapes::Samples &samples, const SpaceWarp &warp)
+{
+  shapes::Samples result;
+  for (std::size_t i = 0; i < samples.size (); ++i)
+    result.add (warp.map (samples.positions[i]),
+                (warp.jacobian (samples.positions[i]).inverse ().transpose () * samples.normals[i]).normalized ());
+  return result;
+}
+
+} // namespace
+
+class SharpSurfaces : public FieldTest
+{
+};
+
+TEST_F (SharpSurfaces, ThetaIsTheSignedDistanceToEveryModel)
+{
+  const auto sphere = surfaceOf (SurfaceModel::SPHERE, {1.0f, 0.0f, 0.0f, 2.0f});
+  EXPECT_NEAR (sphere->theta ({1.0, 5.0, 0.0}), 3.0, 1e-6);
+  const auto cylinder = surfaceOf (SurfaceModel::CYLINDER, {0.0f, 0.0f, 7.0f, 0.0f, 0.0f, -3.0f, 0.5f});
+  EXPECT_NEAR (cylinder->theta ({0.3, 0.4, 2.0}), 0.0, 1e-6);
+  EXPECT_NEAR (cylinder->theta ({0.0, 0.1, 2.0}), -0.4, 1e-6);
+  const auto cone = surfaceOf (SurfaceModel::CONE, {0.0f, 0.0f, 1.0f, 0.0f, 0.0f, 1.0f, static_cast<float> (M_PI / 6)});
+  EXPECT_NEAR (cone->theta ({std::tan (M_PI / 6), 0.0, 2.0}), 0.0, 1e-6);
+  EXPECT_NEAR (cone->theta ({0.0, 0.0, 2.0}), -0.5, 1e-6); // sin 30° of the height
+  const auto plane = surfaceOf (SurfaceModel::PLANE, {0.0f, 2.0f, 0.0f, -1.0f});
+  EXPECT_NEAR (plane->theta ({9.0, 1.0, 9.0}), 0.5, 1e-6);
+}
+
+TEST_F (SharpSurfaces, GradientsAgreeWithDifferences)
+{
+  const auto plane = surfaceOf (SurfaceModel::PLANE, {1.0f, 2.0f, -1.0f, 0.3f});
+  const SharpSurface::ConstPtr surfaces[] = {
+      plane,
+      surfaceOf (SurfaceModel::SPHERE, {0.1f, 0.2f, 0.3f, 0.7f}),
+      surfaceOf (SurfaceModel::CYLINDER, {0.1f, 0.0f, 0.0f, 1.0f, 1.0f, 0.0f, 0.5f}),
+      surfaceOf (SurfaceModel::CONE, {0.0f, 2.0f, 0.0f, 0.3f, 1.0f, 0.0f, 0.4f}),
+      erkpa::makeWarpedSharpSurface (plane, twist (0.8)),
+      erkpa::makeSharpFunction ([] (const Vector3d &x) { return x.x () * x.y () - x.z (); },
+                                [] (const Vector3d &x) { return Vector3d (x.y (), x.x (), -1.0); })};
+  for (const SharpSurface::ConstPtr &surface : surfaces)
+    for (int i = 0; i < 20; ++i)
+    {
+      const Vector3d x = randomPoint (1.0);
+      const Vector3d gradient = differences ([&] (const Vector3d &p) { return surface->theta (p); }, x);
+      EXPECT_LT ((surface->thetaGradient (x) - gradient).norm (), 1e-6);
+    }
+}
+
+TEST_F (SharpSurfaces, CoefficientsThatMakeNoSurfaceAreRefusedWithTheirReason)
+{
+  const std::pair<SurfaceModel, std::vector<float>> bad[] = {
+      {SurfaceModel::PLANE, {0.0f, 0.0f, 0.0f, 1.0f}},
+      {SurfaceModel::PLANE, {1.0f, 0.0f, 0.0f}},
+      {SurfaceModel::SPHERE, {0.0f, 0.0f, 0.0f, -1.0f}},
+      {SurfaceModel::SPHERE, {0.0f, 0.0f, std::nanf (""), 1.0f}},
+      {SurfaceModel::CYLINDER, {0.0f, 0.0f, 0.0f, 0.0f, 0.0f, 0.0f, 1.0f}},
+      {SurfaceModel::CYLINDER, {0.0f, 0.0f, 0.0f, 0.0f, 0.0f, 1.0f, 0.0f}},
+      {SurfaceModel::CONE, {0.0f, 0.0f, 0.0f, 0.0f, 0.0f, 1.0f, 2.0f}}};
+  for (const auto &[model, coefficients] : bad)
+  {
+    SharpSurface::ConstPtr surface;
+    const erkpa::Outcome outcome = erkpa::makeSharpSurface (model, coefficients, surface);
+    EXPECT_EQ (outcome.status, erkpa::Status::INVALID_SETTING);
+    EXPECT_FALSE (outcome.message.empty ());
+    EXPECT_EQ (surface, nullptr);
+  }
+}
+
+TEST_F (SharpSurfaces, ConeThroughTheRimMakesACylindersLidSharp)
+{
+  // Where lid and wall meet at z = 0.5, r = 0.5, the cone of 45° halves them all around.
+  shapes::Samples can;
+  std::uniform_real_distribution<double> unit (0.0, 1.0);
+  for (int i = 0; i < 12000; ++i)
+  {
+    const double turn = 2.0 * M_PI * unit (random_engine);
+    const Vector3d out (std::cos (turn), std::sin (turn), 0.0);
+    if (i % 3 == 0)
+      can.add (0.5 * std::sqrt (unit (random_engine)) * out + 0.5 * Vector3d::UnitZ (), Vector3d::UnitZ ());
+    else
+      can.add (0.5 * out + (unit (random_engine) - 0.5) * Vector3d::UnitZ (), out);
+  }
+  FieldOptions options = optionsOf (Order::QUADRATIC, 0, 0.15);
+  const auto rim = [] (const ImplicitField &field)
+  {
+    double largest = 0.0;
+    for (double turn = 0.0; turn < 2.0 * M_PI; turn += 0.05)
+      largest = std::max (largest, std::abs (field.value ({0.5 * std::cos (turn), 0.5 * std::sin (turn), 0.5})));
+    return largest;
+  };
+  const double round = rim (*shapes::field (can, options));
+  options.sharp_surfaces.push_back (
+      surfaceOf (SurfaceModel::CONE, {0.0f, 0.0f, 0.0f, 0.0f, 0.0f, 1.0f, static_cast<float> (M_PI_4)}));
+  const double sharp = rim (*shapes::field (can, options));
+  EXPECT_GT (round, 0.01);
+  EXPECT_LT (sharp, 0.1 * round);
+}
+
+TEST_F (SharpSurfaces, TwistedPlanesMakeTheEdgesOfATwistedBoxSharp)
+{
+  const SpaceWarp::ConstPtr there = twist (0.8), back = twist (-0.8);
+  const shapes::Samples box = warped (shapes::box (20000, HALF), *there);
+  const auto sharp = shapes::field (box, withBisectors (back));
+  const auto round = shapes::field (box, optionsOf (Order::AUTOMATIC, 0, 0.16));
+  double largest_sharp = 0.0, largest_round = 0.0;
+  for (const Vector3d &p : edgePoints ())
+  {
+    largest_sharp = std::max (largest_sharp, std::abs (sharp->value (there->map (p))));
+    largest_round = std::max (largest_round, std::abs (round->value (there->map (p))));
+  }
+  EXPECT_LT (largest_sharp, 2e-3);
+  EXPECT_GT (largest_round, 10.0 * largest_sharp);
+}
+
+class WarpedField : public FieldTest
+{
+};
+
+TEST_F (WarpedField, IsTheFieldWhereTheWarpComesFrom)
+{
+  const shapes::Samples box = shapes::box (8000, HALF);
+  FieldOptions options = withBisectors ();
+  const auto straight = shapes::field (box, options);
+  for (const SpaceWarp::ConstPtr &warp : {twist (0.8), bend (0.6)})
+  {
+    options.warp = warp;
+    const auto field = shapes::field (box, options);
+    for (std::size_t i = 0; i < 60; ++i)
+    {
+      const Vector3d x = box.positions[i] + randomPoint (0.04), y = warp->map (x);
+      EXPECT_NEAR (field->value (y), straight->value (x), 1e-9);
+      const Vector3d fine = differences ([&] (const Vector3d &p) { return field->value (p); }, y, 1e-6);
+      if ((fine - differences ([&] (const Vector3d &p) { return field->value (p); }, y, 2e-6)).norm () < 1e-4)
+      {
+        EXPECT_LT ((field->sample (y).gradient - fine).norm (), 1e-3);
+      }
+    }
+    for (const Vector3d &p : edgePoints ())
+      EXPECT_NEAR (field->value (warp->map (p)), 0.0, 1e-4);
+  }
+}
+
+TEST_F (WarpedField, PolygonizesClosedWithTheNormalsOfTheWarpedSurface)
+{
+  const shapes::Samples torus = shapes::torus (6000, 0.8, 0.3);
+  const auto straight = shapes::field (torus);
+  erkpa::Options options;
+  options.field.warp = bend (0.6);
+  options.polygonizer.voxel_size = 0.05;
+  const auto field = shapes::field (torus, options.field);
+  erkpa::TriangleMesh mesh;
+  erkpa::Report report;
+  ASSERT_TRUE (erkpa::buildMesh (*field, options, mesh, report).ok ());
+  EXPECT_MESH_CONTRACT (mesh, true);
+  EXPECT_EQ (report.topology.euler, 0);
+  for (std::size_t v = 0; v < mesh.vertices.size (); v += 7)
+  {
+    Vector3d from = mesh.vertices[v].cast<double> ();
+    ASSERT_TRUE (options.field.warp->invert (mesh.vertices[v].cast<double> (), from, 1e-6));
+    const Vector3d ring = 0.8 * Vector3d (from.x (), from.y (), 0.0).normalized ();
+    EXPECT_NEAR ((from - ring).norm (), 0.3, 3e-3);
+    const Vector3d normal =
+        options.field.warp->jacobian (from).inverse ().transpose () * straight->sample (from).gradient;
+    EXPECT_LT ((normal.normalized () - mesh.normals[v].cast<double> ()).norm (), 1e-3);
+  }
+}
+
+TEST_F (WarpedField, IsUndefinedWhereTheWarpHasNoOrigin)
+{
+  FieldOptions options = optionsOf (Order::AUTOMATIC, 20);
+  options.warp = erkpa::makeSpaceWarp ([] (const Vector3d &x) { return Vector3d (std::tanh (x.x ()), x.y (), x.z ()); },
+                                       [] (const Vector3d &x)
+                                       {
+                                         const double c = std::cosh (x.x ());
+                                         return Eigen::Matrix3d (Vector3d (1.0 / (c * c), 1.0, 1.0).asDiagonal ());
+                                       });
+  const auto field = shapes::field (shapes::sphere (500), options);
+  EXPECT_TRUE (field->sample ({std::tanh (1.0), 0.0, 0.0}).isDefined ());
+  EXPECT_FALSE (field->sample ({1.5, 0.0, 0.0}).isDefined ());
+}
