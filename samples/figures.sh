@@ -3,7 +3,7 @@
 #
 # Figures 2, 3, 5 and 6 of the paper (Debian, Ubuntu): installs what is needed, builds, and draws them into
 # build/figures. Figure 2 needs no data; the others are drawn where DATA_FOLDER has their points: screwdriver_40722.xyz,
-# venus_711.off and happy_buddha_5000.xyz (x y z nx ny nz a line; faces in the .off).
+# venus_711.off and happy_buddha_5000.xyz (x y z nx ny nz a line; vertices and faces in the .off).
 # usage: figures.sh [DATA_FOLDER]
 set -euo pipefail
 
@@ -79,15 +79,14 @@ figure3()
 
 figure5()
 {
-  local method=("${papers_method[@]}" -resolution 100)
-  /usr/bin/python3 "$repo/samples/figures/normals_from_faces.py" "$data/venus_711.off" venus.xyz
-  reconstruct venus.xyz venus_10.ply "${method[@]}" -radius 0.525
-  reconstruct venus.xyz venus_30.ply "${method[@]}" -radius 1.575
-  reconstruct venus.xyz venus_30_sharp.ply "${method[@]}" -radius 1.575 -sharp 0,1,0,0.0425 # half way up
-  reconstruct venus.xyz venus_50.ply "${method[@]}" -radius 2.625
-  reconstruct venus.xyz venus_100.ply "${method[@]}" -radius 5.25
+  local points="$data/venus_711.off" method=("${papers_method[@]}" -resolution 100) # normals from the faces
+  reconstruct "$points" venus_10.ply "${method[@]}" -radius 0.525
+  reconstruct "$points" venus_30.ply "${method[@]}" -radius 1.575
+  reconstruct "$points" venus_30_sharp.ply "${method[@]}" -radius 1.575 -sharp 0,1,0,0.0425 # half way up
+  reconstruct "$points" venus_50.ply "${method[@]}" -radius 2.625
+  reconstruct "$points" venus_100.ply "${method[@]}" -radius 5.25
   draw figure5.png --columns 6 --width 250 --height 440 --from=0.5,0.1,1 --up=0,1,0 \
-    "(a) 711 points=venus.xyz" "(b) 10 %=venus_10.ply" "(c) 30 %=venus_30.ply" \
+    "(a) 711 points=$points" "(b) 10 %=venus_10.ply" "(c) 30 %=venus_30.ply" \
     "(d) 30 %, sharp half way up=venus_30_sharp.ply" "(e) 50 %=venus_50.ply" "(f) 100 %=venus_100.ply"
 }
 

@@ -515,3 +515,158 @@ TEST (Erkpa, RefusesAnEmptyCloudWhoseFieldsAreKnownAtRunTime)
   EXPECT_EQ (erkpa::reconstruct (pcl::PCLPointCloud2 (), {}, mesh, report).status, Status::TOO_FEW_POINTS);
   expectEmpty (mesh);
 }
+
+TEST (Erkpa, TakesSharpSurfacesByTheirModelOfSampleConsensus)
+{
+  ERKPA<pcl::PointNormal> erkpa;
+  const auto ball = coefficients ({1.0f, 0.0f, 0.0f, 0.8f});
+  const auto tube = coefficients ({0.0f, 0.0f, 0.0f, 0.0f, 0.0f, 1.0f, 0.7f});
+  EXPECT_TRUE (erkpa.addSharpEdge (ball, pcl::SACMODEL_SPHERE));
+  EXPECT_TRUE (erkpa.addSharpEdge (tube, pcl::SACMODEL_CYLINDER));
+  EXPECT_TRUE (erkpa.addSharpEdge (tube, pcl::SACMODEL_CONE));
+  EXPECT_TRUE (erkpa.addSharpEdge (ball, pcl::SACMODEL_NORMAL_PLANE));
+  EXPECT_FALSE (erkpa.addSharpEdge (ball, pcl::SACMODEL_CYLINDER));
+  EXPECT_FALSE (erkpa.addSharpEdge (ball, pcl::SACMODEL_TORUS));
+  EXPECT_EQ (erkpa.getOptions ().field.sharp_surfaces.size (), 4u);
+  EXPECT_EQ (erkpa.getSharpEdges ().size (), 1u); // the plane
+  erkpa.addSharpSurface (erkpa::makeSharpFunction ([] (const Eigen::Vector3d &x) { return x.z (); },
+                                                   [] (const Eigen::Vector3d &) { return Eigen::Vector3d::UnitZ (); }));
+  erkpa.addSharpSurface (nullptr);
+  EXPECT_EQ (erkpa.getOptions ().field.sharp_surfaces.size (), 5u);
+  erkpa.setInputCloud (shapes::cloud<pcl::PointNormal> (shapes::sphere (3000)));
+  pcl::PolygonMesh mesh;
+  erkpa.reconstruct (mesh);
+  ASSERT_EQ (erkpa.getStatus (), Status::OK) << erkpa.getStatusMessage ();
+  expectSphere<pcl::PointNormal> (mesh);
+  erkpa.clearSharpEdges ();
+  EXPECT_TRUE (erkpa.getOptions ().field.sharp_surfaces.empty ());
+}
+
+TEST (Erkpa, TakesRadiiFromAFieldOfTheCloudOrFromAList)
+{
+  const auto cloud = shapes::cloud<pcl::PointNormal> (shapes::sphere (3000));
+  std::vector<float> radii;
+  for (pcl::PointNormal &point : *cloud)
+  {
+    point.curvature = 0.25f + 0.05f * point.z;
+    radii.push_back (point.curvature);
+  }
+  ERKPA<pcl::PointNormal> by_field, by_list;
+  pcl::PolygonMesh of_field, of_list;
+  by_field.setInputCloud (cloud);
+  by_field.setRadiusField ("curvature");
+  by_field.reconstruct (of_field);
+  by_list.setInputCloud (cloud);
+  by_list.setRadii (radii);
+  by_list.reconstruct (of_list);
+  ASSERT_EQ (by_field.getStatus (), Status::OK) << by_field.getStatusMessage ();
+  expectSphere<pcl::PointNormal> (of_field);
+  EXPECT_EQ (of_field.cloud.data, of_list.cloud.data);
+}
+
+TEST (Erkpa, LeavesOutPointsOfNoConfidence)
+{
+  const auto cloud = shapes::cloud<pcl::PointXYZINormal> (shapes::sphere (3000));
+  for (pcl::PointXYZINormal &point : *cloud)
+    point.intensity = 0.7f;
+  pcl::PointXYZINormal stray;
+  stray.x = 0.4f;
+  stray.normal_x = 1.0f;
+  for (int i = 0; i < 40; ++i)
+  {
+    stray.y = 0.01f * static_cast<float> (i);
+    cloud->push_back (stray);
+  }
+  ERKPA<pcl::PointXYZINormal> erkpa;
+  erkpa.setInputCloud (cloud);
+  erkpa.setConfidenceField ("intensity");
+  pcl::PolygonMesh mesh;
+  erkpa.reconstruct (mesh);
+  ASSERT_EQ (erkpa.getStatus (), Status::OK) << erkpa.getStatusMessage ();
+  EXPECT_EQ (erkpa.getReport ().points.no_confidence, 40u);
+  expectSphere<pcl::PointXYZINormal> (mesh);
+}
+
+TEST (Erkpa, RefusesWhatIsNotGivenForEveryPoint)
+{
+  const auto cloud = shapes::cloud<pcl::PointNormal> (shapes::sphere (500));
+  const auto status = [&] (auto set)
+  {
+    ERKPA<pcl::PointNormal> erkpa;
+    erkpa.setInputCloud (cloud);
+    set (erkpa);
+    pcl::PolygonMesh mesh = usedMesh ();
+    erkpa.reconstruct (mesh);
+    expectEmpty (mesh);
+    EXPECT_FALSE (erkpa.getStatusMessage ().empty ());
+    return erkpa.getStatus ();
+  };
+  using Stage = ERKPA<pcl::PointNormal>;
+  const Eigen::Matrix3f wide = 0.5f * Eigen::Matrix3f::Identity ();
+  EXPECT_EQ (status ([] (Stage &s) { s.setRadii ({0.1f, 0.2f}); }), Status::INVALID_SETTING);
+  EXPECT_EQ (status ([] (Stage &s) { s.setRadii (std::vector<float> (500, -1.0f)); }), Status::INVALID_SETTING);
+  EXPECT_EQ (status ([] (Stage &s) { s.setRadii (std::vector<float> (500, NOT_A_NUMBER)); }), Status::INVALID_SETTING);
+  EXPECT_EQ (status ([] (Stage &s) { s.setConfidences ({1.0f}); }), Status::INVALID_SETTING);
+  EXPECT_EQ (status ([&] (Stage &s) { s.setSupportShapes (std::vector<Eigen::Matrix3f> (500, wide)); }),
+             Status::INVALID_SETTING);
+  EXPECT_EQ (status ([] (Stage &s) { s.setRadiusField ("nothing"); }), Status::INVALID_SETTING);
+  EXPECT_EQ (status (
+                 [] (Stage &s)
+                 {
+                   s.setRadii (std::vector<float> (500, 0.3f));
+                   s.setKSearch (20);
+                 }),
+             Status::INVALID_SETTING);
+  EXPECT_EQ (status ([] (Stage &s) { s.setConfidences (std::vector<float> (500, 0.0f)); }), Status::TOO_FEW_POINTS);
+  EXPECT_EQ (status ([] (Stage &s) { s.setRadiusFunction ([] (const Eigen::Vector3d &) { return -1.0; }); }),
+             Status::INVALID_SETTING);
+}
+
+TEST (Erkpa, InterpolatesByCollocation)
+{
+  ERKPA<pcl::PointNormal> erkpa;
+  erkpa.setInputCloud (shapes::cloud<pcl::PointNormal> (shapes::torus (2500, 1.0, 0.4)));
+  erkpa.setInterpolation (erkpa::Interpolation::COLLOCATION);
+  double last = 0.0;
+  erkpa.setProgressCallback ([&last] (double done) { last = done; });
+  const erkpa::ImplicitField::ConstPtr field = erkpa.computeField ();
+  ASSERT_NE (field, nullptr) << erkpa.getStatusMessage ();
+  EXPECT_EQ (last, 1.0);
+  EXPECT_EQ (erkpa.getReport ().collocation.unknowns, 2500u);
+  for (const Eigen::Vector3f &p : field->points ().positions)
+    ASSERT_NEAR (field->value (p.cast<double> () + field->points ().origin), 0.0, 1e-6);
+}
+
+TEST (Erkpa, GivesTheMeshOfTheWarpedSpace)
+{
+  ERKPA<pcl::PointNormal> erkpa;
+  erkpa.setInputCloud (shapes::cloud<pcl::PointNormal> (shapes::sphere (3000)));
+  erkpa.setSpaceWarp (erkpa::makeSpaceWarp (
+      [] (const Eigen::Vector3d &x) { return Eigen::Vector3d (2.0 * x.x (), x.y () + 5.0, x.z ()); },
+      [] (const Eigen::Vector3d &) { return Eigen::Matrix3d (Eigen::Vector3d (2.0, 1.0, 1.0).asDiagonal ()); }));
+  pcl::PolygonMesh output;
+  erkpa.reconstruct (output);
+  const erkpa::TriangleMesh mesh = fromPcl (output);
+  EXPECT_MESH_CONTRACT (mesh, true);
+  EXPECT_NEAR (shapes::volume (mesh), 2.0 * 4.0 / 3.0 * M_PI, 0.04);
+}
+
+TEST (Erkpa, RemembersEverySetting)
+{
+  ERKPA<pcl::PointNormal> erkpa;
+  erkpa.setOffset (0.3);
+  erkpa.setEnrichment (erkpa::EnrichmentType::JUMP);
+  erkpa.setConstraint (erkpa::Constraint::FUNCTIONAL);
+  erkpa.setKernel (erkpa::KernelType::GAUSSIAN);
+  erkpa.setFlatten (0.5);
+  erkpa.setRadiusRamp ({2, 0.1, 0.2});
+  erkpa.setConfidenceField ("trust");
+  EXPECT_EQ (erkpa.getOffset (), 0.3);
+  EXPECT_EQ (erkpa.getEnrichment (), erkpa::EnrichmentType::JUMP);
+  EXPECT_EQ (erkpa.getConstraint (), erkpa::Constraint::FUNCTIONAL);
+  EXPECT_EQ (erkpa.getKernel (), erkpa::KernelType::GAUSSIAN);
+  EXPECT_EQ (erkpa.getFlatten (), 0.5);
+  EXPECT_EQ (erkpa.getRadiusRamp ().axis, 2);
+  EXPECT_EQ (erkpa.getConfidenceField (), "trust");
+  EXPECT_EQ (erkpa.getOptions ().points.confidence_field, "trust");
+}

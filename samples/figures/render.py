@@ -3,8 +3,8 @@
 """Draws points and meshes side by side into a PNG.
 
 Each panel is CAPTION=FILE or CAPTION=FILE@x,y,z,r, where the latter is a close-up of a ball. Files are .xyz and .pcd
-(ASCII, x y z nx ny nz) for points, and .ply for meshes with normals. Points that look away are left out. All panels are
-seen from the same side and, but for close-ups, in the same scale.
+(ASCII, x y z nx ny nz) and .off (vertices only) for points, and .ply for meshes with normals. Points that look away are
+left out. All panels are seen from the same side and, but for close-ups, in the same scale.
 """
 import argparse
 import sys
@@ -24,8 +24,18 @@ def numbers(text):
     return numpy.array([float(word) for word in text.split(",")])
 
 
+def read_table(name):
+    if name.endswith(".pcd"):
+        return numpy.loadtxt(name, skiprows=11)
+    if not name.endswith(".off"):
+        return numpy.loadtxt(name)
+    with open(name, encoding="ascii") as file:
+        words = file.read().split()[1:]
+    return numpy.array(words[3 : 3 + 3 * int(words[0])], dtype=float).reshape(-1, 3)
+
+
 def read_points(name):
-    table = numpy.loadtxt(name, skiprows=11 if name.endswith(".pcd") else 0)
+    table = read_table(name)
     points = vtk.vtkPoints()
     points.SetData(numpy_to_vtk(table[:, :3], deep=True))
     data = vtk.vtkPolyData()

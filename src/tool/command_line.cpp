@@ -112,11 +112,11 @@ describeField (const FieldOptions &field)
            .c_str ()) //
       ("sharp", words ("a,b,c,d"),
        "a sharp edge where the plane a x + b y + c z + d = 0 cuts the surface; may be repeated (default: none)") //
-      ("sharp_sphere", words ("x,y,z,r"), "the same with a sphere: center and radius")                           //
+      ("sharp_sphere", words ("x,y,z,r"), "the same with a sphere: center and radius (default: none)")           //
       ("sharp_cylinder", words ("x,y,z,dx,dy,dz,r"),
-       "the same with a cylinder: point on the axis, direction of the axis, radius") //
+       "the same with a cylinder: point on the axis, direction of the axis, radius (default: none)") //
       ("sharp_cone", words ("x,y,z,dx,dy,dz,angle"),
-       "the same with a cone: apex, direction of the axis, angle between axis and side in radians") //
+       "the same with a cone: apex, direction of the axis, angle between axis and side in radians (default: none)") //
       ("enrichment", word ("NAME"),
        withDefault (listNames (ENRICHMENTS) + ": what sharp edges add to the field; jump is for functional constraints",
                     nameOf (ENRICHMENTS, field.enrichment))

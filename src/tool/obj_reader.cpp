@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "cloud_reader.h"
+#include "face_normals.h"
 #include "point_fields.h"
 #include "text_scanner.h"
 
@@ -37,6 +38,8 @@ public:
         normals_.push_back (triple (tokens, 1));
       else if (tokens[0] == "f" && !normals_.empty ())
         std::for_each (tokens.begin () + 1, tokens.end (), [this] (std::string_view c) { readCorner (c); });
+      else if (tokens[0] == "f")
+        readPolygon (tokens);
     }
   }
 
@@ -67,6 +70,8 @@ public:
     }
     cloud.width = static_cast<std::uint32_t> (positions_.size ());
     cloud.height = 1;
+    if (normals_.empty ())
+      appendNormals (normalsOfFaces (), cloud);
     return cloud;
   }
 
@@ -120,6 +125,27 @@ private:
     known = known == UNKNOWN || same (known, normal) ? normal : SEVERAL;
   }
 
+  /** \brief A face of a file that has no normals so far. */
+  void
+  readPolygon (const Tokens &tokens)
+  {
+    polygons_.emplace_back ();
+    for (std::size_t i = 1; i < tokens.size (); ++i)
+      polygons_.back ().push_back (index (tokens[i].substr (0, tokens[i].find ('/')), positions_.size ()));
+  }
+
+  std::vector<Eigen::Vector3d>
+  normalsOfFaces () const
+  {
+    std::vector<Eigen::Vector3d> positions;
+    for (const Triple &p : positions_)
+      positions.emplace_back (p[0], p[1], p[2]);
+    FaceNormals normals (positions);
+    for (const std::vector<std::size_t> &polygon : polygons_)
+      normals.add (polygon);
+    return normals.normals ();
+  }
+
   bool
   same (std::size_t a, std::size_t b) const
   {
@@ -142,6 +168,7 @@ private:
   std::vector<Triple> normals_;
   std::vector<Triple> colours_;
   std::vector<std::size_t> normal_of_;
+  std::vector<std::vector<std::size_t>> polygons_; // without normals
   bool has_corners_ = false;
 };
 

@@ -112,6 +112,23 @@ appendRow (const TextScanner &scanner, const std::vector<std::string_view> &toke
 }
 
 void
+appendNormals (const std::vector<Eigen::Vector3d> &normals, pcl::PCLPointCloud2 &cloud)
+{
+  if (normals.empty ())
+    return;
+  const std::size_t old_step = cloud.point_step;
+  for (const char *name : {"nx", "ny", "nz"})
+    appendField (cloud, name, Field::FLOAT64);
+  std::vector<std::uint8_t> data (normals.size () * cloud.point_step);
+  for (std::size_t i = 0; i < normals.size (); ++i)
+  {
+    std::copy_n (cloud.data.data () + i * old_step, old_step, data.data () + i * cloud.point_step);
+    std::memcpy (data.data () + i * cloud.point_step + old_step, normals[i].data (), 3 * sizeof (double));
+  }
+  cloud.data.swap (data);
+}
+
+void
 readRows (TextScanner &scanner, std::size_t count, pcl::PCLPointCloud2 &cloud)
 {
   const std::size_t columns = columnsOf (cloud);

@@ -3,6 +3,7 @@
 
 #include "text_scanner.h"
 
+#include <Eigen/Core>
 #include <pcl/PCLPointCloud2.h>
 
 #include <cstddef>
@@ -27,6 +28,10 @@ sizeOfType (std::uint8_t datatype);
 /** \brief The values of a row of text, stored as the fields of the cloud ask; one column per value. */
 void
 appendRow (const TextScanner &scanner, const std::vector<std::string_view> &tokens, pcl::PCLPointCloud2 &cloud);
+
+/** \brief Appends nx ny nz to every point; nothing for no normals. */
+void
+appendNormals (const std::vector<Eigen::Vector3d> &normals, pcl::PCLPointCloud2 &cloud);
 
 /** \brief Number of columns a row of text has. */
 std::size_t

@@ -2,6 +2,8 @@
 //
 // The tables of text: .xyz, .xyzn, .pwn, .off.
 #include "cloud_reader.h"
+#include "face_normals.h"
+#include "float_cloud.h"
 #include "point_fields.h"
 #include "text_scanner.h"
 
@@ -128,6 +130,25 @@ layOutOff (const OffKeyword &keyword, const Tokens &row, pcl::PCLPointCloud2 &cl
       appendField (cloud, name, has_point ? Field::FLOAT64 : Field::UINT8);
 }
 
+/** \brief The normals that the faces after the vertices give; empty where there are none. */
+std::vector<Eigen::Vector3d>
+readFaces (TextScanner &scanner, std::size_t count, const pcl::PCLPointCloud2 &cloud)
+{
+  const std::vector<Eigen::Vector3d> positions = positionsOf (cloud);
+  FaceNormals normals (positions);
+  Tokens tokens;
+  std::vector<std::size_t> polygon;
+  for (std::size_t face = 0; face < count && scanner.nextRow (tokens); ++face)
+  {
+    polygon.clear ();
+    const std::size_t corners = std::min (scanner.count (tokens[0]), tokens.size () - 1); // colours may follow
+    for (std::size_t i = 1; i <= corners; ++i)
+      polygon.push_back (scanner.count (tokens[i]));
+    normals.add (polygon);
+  }
+  return normals.normals ();
+}
+
 } // namespace
 
 RawCloud
@@ -142,11 +163,14 @@ readOff (std::string_view bytes, const std::string &path)
   if (tokens.empty ())
     scanner.requireRow (tokens, "the line with the number of vertices");
   const std::size_t count = scanner.count (tokens[0]);
+  const std::size_t faces = tokens.size () > 1 ? scanner.count (tokens[1]) : 0;
   TextScanner ahead = scanner;
   ahead.nextRow (tokens);
   layOutOff (keyword, tokens, result.cloud);
   readRows (scanner, count, result.cloud);
   setCount (result.cloud, count);
+  if (!keyword.has_normals)
+    appendNormals (readFaces (scanner, faces, result.cloud), result.cloud);
   return result;
 }
 

@@ -27,8 +27,29 @@ TEST_F (ErkpaReconstruct, PrintsEveryDefaultOnHelp)
     const Result result = run (option);
     EXPECT_EQ (result.status, 0) << option;
     EXPECT_EQ (result.err, "") << option;
-    for (const std::string name : {"-k", "-radius", "-order", "-constraint", "-sharp", "-voxel", "-resolution", "-iso",
-                                   "-viewpoint", "-threads", "-evaluate", "-report"})
+    for (const std::string name : {"-k",
+                                   "-radius",
+                                   "-order",
+                                   "-constraint",
+                                   "-sharp",
+                                   "-voxel",
+                                   "-resolution",
+                                   "-iso",
+                                   "-viewpoint",
+                                   "-threads",
+                                   "-evaluate",
+                                   "-report",
+                                   "-radius_ramp",
+                                   "-radius_field",
+                                   "-confidence_field",
+                                   "-flatten",
+                                   "-kernel",
+                                   "-offset",
+                                   "-interpolate",
+                                   "-enrichment",
+                                   "-sharp_sphere",
+                                   "-sharp_cylinder",
+                                   "-sharp_cone"})
     {
       const std::size_t at = result.out.find ("\n    " + name + " ");
       ASSERT_NE (at, std::string::npos) << name;
@@ -136,6 +157,83 @@ TEST_F (ErkpaReconstruct, PrintsTimingsAndNothingOnStderr)
   EXPECT_EQ (result.err, "");
   for (const std::string words : {"Loading", "Computing", "Saving", "[done, ", " ms : 3000 points]"})
     EXPECT_NE (result.out.find (words), std::string::npos) << result.out;
+}
+
+TEST_F (ErkpaReconstruct, MeshesByEveryConstraintKernelAndInterpolation)
+{
+  const std::string options[] = {"-constraint functional",   "-constraint offsurface -offset 0.3",
+                                 "-kernel wendland_c4",      "-kernel gaussian -constraint functional",
+                                 "-interpolate collocation", "-interpolate collocation -constraint offsurface",
+                                 "-interpolate singular",    "-flatten 0.5 -k 40",
+                                 "-radius_ramp z,0.2,0.4",   "-constraint functional -enrichment jump -sharp 0,0,1,0"};
+  for (const std::string &option : options)
+  {
+    const Result result = runCoarse ("sphere.xyz out.ply " + option);
+    ASSERT_EQ (result.status, 0) << option << ": " << result.err;
+    expectSphere ("out.ply");
+  }
+}
+
+TEST_F (ErkpaReconstruct, MakesSharpEdgesWhereOtherSurfacesThanPlanesCut)
+{
+  for (const std::string sharp : {"-sharp_sphere 1,0,0,0.8", "-sharp_cylinder 0,0,0,0,0,1,0.7",
+                                  "-sharp_cone 0,0,0,0,0,1,0.8", "-sharp_sphere=-1,0,0,0.8 -sharp_sphere 0,1,0,0.8"})
+  {
+    ASSERT_EQ (runCoarse ("sphere.xyz out.ply " + sharp).status, 0) << sharp;
+    expectSphere ("out.ply"); // nothing there to be sharp
+  }
+}
+
+TEST_F (ErkpaReconstruct, TakesRadiiAndConfidencesFromFieldsOfTheCloud)
+{
+  std::ostringstream ply;
+  const auto points = fibonacciSphere (3000);
+  ply << "ply\nformat ascii 1.0\nelement vertex " << points.size () + 30 << "\n";
+  for (const char *name : {"x", "y", "z", "nx", "ny", "nz", "reach", "trust"})
+    ply << "property float " << name << "\n";
+  ply << "end_header\n";
+  for (const Eigen::Vector3d &p : points)
+    ply << p.transpose () << " " << p.transpose () << " " << 0.25 + 0.05 * p.z () << " 0.8\n";
+  for (int i = 0; i < 30; ++i) // stray points that nobody trusts
+    ply << "0.5 0 " << 0.01 * i << " 0 0 1 0.3 0\n";
+  write ("fields.ply", ply.str ());
+  const Result result = runCoarse ("fields.ply out.ply -radius_field reach -confidence_field trust -report r.json");
+  ASSERT_EQ (result.status, 0) << result.err;
+  expectSphere ("out.ply");
+  const auto report = nlohmann::json::parse (read ("r.json"));
+  EXPECT_EQ (report["points"]["no_confidence"], 30);
+  EXPECT_EQ (report["points"]["used"], 3000);
+}
+
+TEST_F (ErkpaReconstruct, EvaluatesTheFieldWithoutAMesh)
+{
+  write ("query.xyz", "0 0 1.05\n0 0 0.95\n");
+  const Result result = run ("sphere.xyz -evaluate query.xyz values.txt -report r.json");
+  ASSERT_EQ (result.status, 0) << result.err;
+  std::istringstream values (read ("values.txt"));
+  double x = 0.0, f = 0.0;
+  ASSERT_TRUE (values >> x >> x >> x >> f);
+  EXPECT_NEAR (f, 0.05, 2e-3);
+  EXPECT_EQ (nlohmann::json::parse (read ("r.json"))["mesh"]["triangles"], 0);
+}
+
+TEST_F (ErkpaReconstruct, PassesThroughTheNodesByCollocation)
+{
+  std::ostringstream rows;
+  const auto points = fibonacciSphere (1500);
+  for (const Eigen::Vector3d &p : points) // far from round
+    rows << (p * (1.0 + 0.05 * p.x () * p.y ())).transpose () << " " << p.transpose () << "\n";
+  write ("bumpy.xyz", rows.str ());
+  for (const std::string constraint : {"hermite", "functional", "offsurface"})
+  {
+    ASSERT_EQ (
+        run ("bumpy.xyz -interpolate collocation -evaluate bumpy.xyz values.txt -constraint " + constraint).status, 0);
+    std::istringstream values (read ("values.txt"));
+    double x = 0.0, f = 0.0, largest = 0.0;
+    while (values >> x >> x >> x >> f >> x >> x >> x)
+      largest = std::max (largest, std::abs (f));
+    EXPECT_LT (largest, 2e-6) << constraint; // 1e-5 of the support radius, about 0.23
+  }
 }
 
 } // namespace

@@ -6,6 +6,8 @@
 #include <nlohmann/json.hpp>
 #include <pcl/io/pcd_io.h>
 
+#include <sstream>
+
 namespace
 {
 
@@ -164,6 +166,32 @@ TEST_F (ErkpaReconstruct, KeepsThePrecisionOfTheVerticesInText)
   ASSERT_EQ (exact.size (), text.size ());
   for (std::size_t i = 0; i < exact.size (); ++i)
     ASSERT_EQ (exact[i].getVector3fMap (), text[i].getVector3fMap ());
+}
+
+TEST_F (ErkpaReconstruct, TakesNormalsFromTheFacesOfFilesThatHaveNone)
+{
+  // Eight points are too few to estimate normals from; with those of the faces f is negative inside.
+  const std::string corners = "-1 -1 -1\n1 -1 -1\n-1 1 -1\n1 1 -1\n-1 -1 1\n1 -1 1\n-1 1 1\n1 1 1\n";
+  write ("cube.off",
+         "OFF\n8 6 0\n" + corners + "4 0 2 3 1 0.5 0.5 0.5\n4 4 5 7 6\n4 0 1 5 4\n4 2 6 7 3\n4 0 4 6 2\n4 1 3 7 5\n");
+  std::string vertices;
+  std::istringstream rows (corners);
+  for (std::string row; std::getline (rows, row);)
+    vertices += "v " + row + "\n";
+  write ("cube.obj", vertices + "f 1 3 4 2\nf 5/1 6/1 8/1 7/1\nf 1 2 6 5\nf 3 7 8 4\nf -8 -4 -2 -6\nf 2 4 8 6\n");
+  write ("query.xyz", "0 0 0\n1.2 1.2 1.2\n");
+  for (const std::string input : {"cube.off", "cube.obj"})
+  {
+    const Result result = run (input + " -constraint functional -radius 2.5 -order constant -evaluate query.xyz f.txt");
+    ASSERT_EQ (result.status, 0) << result.err;
+    EXPECT_EQ (result.out.find ("estimated"), std::string::npos) << input;
+    std::istringstream values (read ("f.txt"));
+    double x = 0.0, f[2] = {};
+    for (double &value : f)
+      ASSERT_TRUE (values >> x >> x >> x >> value >> x >> x >> x);
+    EXPECT_LT (f[0], -1.0) << input;
+    EXPECT_GT (f[1], 0.1) << input;
+  }
 }
 
 } // namespace

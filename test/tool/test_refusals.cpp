@@ -26,25 +26,61 @@ TEST_F (ErkpaReconstruct, RefusesBadUseWithOneLine)
   expectRefuses ("sphere.xyz out.ply -evaluate sphere.xyz", "evaluate");
   expectRefuses ("sphere.xyz out.ply -voxel 0.1 -resolution 30", "-voxel");
   expectRefuses ("sphere.xyz out.ply -k 20 -radius 0.3", "-radius");
+  expectRefuses ("sphere.xyz out.ply -radius 0.2 -radius_ramp x,0.1,0.2", "-radius_ramp");
+  expectRefuses ("sphere.xyz out.ply -radius_field reach -k 20", "-radius_field");
+  expectRefuses ("sphere.xyz out.ply -radius_field reach", "no field reach");
+  expectRefuses ("sphere.xyz out.ply -confidence_field trust", "no field trust");
+  expectRefuses ("sphere.xyz out.ply -radius_field nz", "radius"); // some are negative
+  expectRefuses ("sphere.xyz out.ply -enrichment jump -sharp 1,0,0,0", "functional");
+  expectRefuses ("sphere.xyz out.ply -kernel singular -interpolate collocation", "singular");
   expectRefuses ("sphere.xyz out.ply -report out.ply", "same file");
+  expectRefuses ("sphere.xyz -evaluate sphere.xyz r.txt -report r.txt", "same file");
 }
 
 TEST_F (ErkpaReconstruct, RefusesNonsenseValuesWithOneLine)
 {
-  for (const std::string option : {"-k 3",           "-k -5",
-                                   "-k 20x",         "-k 1e3",
-                                   "-k 99999999999", "-radius -1",
-                                   "-radius nan",    "-radius inf",
-                                   "-voxel -0.1",    "-voxel 0,1",
-                                   "-resolution -3", "-resolution 10.5",
-                                   "-iso nan",       "-iso 1mm",
-                                   "-threads -1",    "-threads two",
-                                   "-order cubic",   "-constraint none",
-                                   "-viewpoint 1,2", "-viewpoint 1,2,nan",
-                                   "-sharp 1,0,0",   "-sharp 1,0,0,0,0",
-                                   "-sharp 0,0,0,1", "-sharp 1,0,0,",
-                                   "-sharp -",       "-k"})
+  for (const std::string option : {"-k 3",
+                                   "-k -5",
+                                   "-k 20x",
+                                   "-k 1e3",
+                                   "-k 99999999999",
+                                   "-radius -1",
+                                   "-radius nan",
+                                   "-radius inf",
+                                   "-voxel -0.1",
+                                   "-voxel 0,1",
+                                   "-resolution -3",
+                                   "-resolution 10.5",
+                                   "-iso nan",
+                                   "-iso 1mm",
+                                   "-threads -1",
+                                   "-threads two",
+                                   "-order cubic",
+                                   "-constraint none",
+                                   "-viewpoint 1,2",
+                                   "-viewpoint 1,2,nan",
+                                   "-sharp 1,0,0",
+                                   "-sharp 1,0,0,0,0",
+                                   "-sharp 0,0,0,1",
+                                   "-sharp 1,0,0,",
+                                   "-sharp -",
+                                   "-k",
+                                   "-kernel box",
+                                   "-interpolate yes",
+                                   "-enrichment 2",
+                                   "-radius_ramp w,1,2",
+                                   "-radius_ramp x",
+                                   "-radius_ramp x,1",
+                                   "-flatten big",
+                                   "-offset 1,2",
+                                   "-sharp_sphere 0,0,0,-1",
+                                   "-sharp_cylinder 0,0,0,0,0,0,1",
+                                   "-sharp_cone 0,0,0,0,0,1,2"})
     expectRefuses ("sphere.xyz out.ply " + option, option.substr (0, option.find (' ')));
+  expectRefuses ("sphere.xyz out.ply -flatten 0", "flatten");
+  expectRefuses ("sphere.xyz out.ply -flatten 2", "flatten");
+  expectRefuses ("sphere.xyz out.ply -offset 0 -constraint offsurface", "offset");
+  expectRefuses ("sphere.xyz out.ply -radius_ramp x,0,1", "ramp");
 }
 
 TEST_F (ErkpaReconstruct, NamesFileAndLineOfBrokenText)
