@@ -49,7 +49,7 @@ checkSupport (const FieldOptions &options)
 } // namespace
 
 ImplicitField::ImplicitField (std::shared_ptr<const OrientedPoints> points, NeighborSearch::ConstPtr search,
-                              const FieldOptions &options)
+                              const FieldOptions &options, int threads)
     : points_ (std::move (points)), search_ (std::move (search)), options_ (options), kernel_ (kernelOf (options))
 {
   if (options_.order == Order::AUTOMATIC)
@@ -65,7 +65,7 @@ ImplicitField::ImplicitField (std::shared_ptr<const OrientedPoints> points, Neig
   pencils_ = std::make_shared<const std::vector<Pencil>> (findPencils (options_.sharp_surfaces, spacing));
   if (options_.constraint != Constraint::OFFSURFACE)
     return;
-  offsets_ = support_size_->radiiOfNodes (*search_);
+  offsets_ = support_size_->radiiOfNodes (*search_, threads);
   for (float &offset : offsets_)
   {
     offset = static_cast<float> (options_.offset * static_cast<double> (offset));

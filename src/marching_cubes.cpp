@@ -281,19 +281,13 @@ polygonize (const ImplicitField &field, const PolygonizerOptions &options, Trian
 
   // Off the middle of the cloud by odd shares of a cell: faces of boxes then do not fall on grid nodes.
   SparseGrid grid (-voxel * Eigen::Vector3d (0.371, 0.437, 0.293), voxel);
-  // Following the surface and placing its vertices take about as long as each other.
-  const auto stage = [&progress] (double start)
-  {
-    return progress ? ProgressCallback ([&progress, start] (double done) { progress (start + 0.5 * done); })
-                    : ProgressCallback ();
-  };
-  SurfaceTracker tracker (field, options, grid, report, stage (0.0));
+  SurfaceTracker tracker (field, options, grid, report, partOf (progress, 0.0, 0.5));
   outcome = tracker.track ();
   if (!outcome.ok ())
     return outcome;
   markCutEdges (tracker.activeCells (), grid);
   SurfaceVertices vertices;
-  placeVertices (field, options, grid, vertices, report, stage (0.5));
+  placeVertices (field, options, grid, vertices, report, partOf (progress, 0.5, 0.5));
 
   const std::size_t on_edges = vertices.positions.size ();
   std::vector<Triangle> triangles = meshCells (grid, tracker.activeCells (), options.threads, vertices);

@@ -97,7 +97,7 @@ makeField (const std::shared_ptr<const OrientedPoints> &points, const NeighborSe
            const Options &options, ImplicitField::ConstPtr &field, Report &report, const ProgressCallback &progress)
 {
   const StageClock clock (report.seconds_field);
-  const auto made = std::make_shared<ImplicitField> (points, search, options.field);
+  const auto made = std::make_shared<ImplicitField> (points, search, options.field, options.polygonizer.threads);
   const bool by_nearest = made->options ().k > 0;
   report.k = by_nearest ? made->options ().k : 0;
   report.radius = by_nearest ? 0.0 : made->typicalRadius ();

@@ -108,7 +108,7 @@ SupportSize::radiusGradientAt (const Eigen::Vector3d &x) const
 }
 
 std::vector<float>
-SupportSize::radiiOfNodes (const NeighborSearch &search) const
+SupportSize::radiiOfNodes (const NeighborSearch &search, int threads) const
 {
   if (kind_ == Kind::PER_NODE)
     return points_.radii;
@@ -119,7 +119,7 @@ SupportSize::radiiOfNodes (const NeighborSearch &search) const
     std::vector<float> squared;
   };
   parallelFor (
-      radii.size (), 0, [] { return Found (); },
+      radii.size (), threads, [] { return Found (); },
       [&] (Found &found, std::size_t i)
       {
         if (kind_ != Kind::NEAREST)

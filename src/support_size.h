@@ -60,7 +60,7 @@ public:
 
   /** \brief The radius at every node. */
   std::vector<float>
-  radiiOfNodes (const NeighborSearch &search) const;
+  radiiOfNodes (const NeighborSearch &search, int threads) const;
 
   /** \brief PER_NODE: the nodes whose supports points within \a extent of \a center may lie in. */
   void

@@ -21,7 +21,8 @@ struct CollocationReport
 /** \brief Make a field interpolate: find node values λ' with Σ_j φ_j(x_i) λ'_j = λ_i (eq. 26-27), the field's own.
  *
  * Where normals take part, their share stands on the right-hand side: Σ_j φ_j(x_i) λ'_j = λ_i - Σ_j ψ_j(x_i)·n_j.
- * The matrix is sparse and not symmetric: small systems are solved directly, others by BiCGSTAB.
+ * The matrix is sparse and not symmetric: small systems are solved directly, others by BiCGSTAB with an approximate
+ * inverse made of small blocks.
  * \param[in,out] field gets the values; unchanged on error
  * \param[in] threads 0 = all processors
  * \param[out] report what was done

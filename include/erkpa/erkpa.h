@@ -196,7 +196,7 @@ private:
 
   /** \brief cloud -> field_ */
   Outcome
-  makeField ();
+  makeField (const ProgressCallback &progress);
 
   /** \brief cloud -> field_ -> mesh */
   bool

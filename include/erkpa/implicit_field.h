@@ -113,9 +113,10 @@ public:
    * \param[in] search finds the nodes; must know the same positions under the same indices
    * \param[in] options settings that checkOptions accepts; k = 0 is settled here. Collocation is not done here but by
    * interpolateNodes (), see collocation.h
+   * \param[in] threads for what is prepared here; 0 = all processors
    */
   ImplicitField (std::shared_ptr<const OrientedPoints> points, NeighborSearch::ConstPtr search,
-                 const FieldOptions &options);
+                 const FieldOptions &options, int threads = 0);
   ~ImplicitField ();
 
   /** \brief Tells whether the settings make sense, and which does not. */

@@ -59,7 +59,7 @@ ERKPA<PointNT>::viewInput (PointView &view) const
 
 template <typename PointNT>
 Outcome
-ERKPA<PointNT>::makeField ()
+ERKPA<PointNT>::makeField (const ProgressCallback &progress)
 {
   field_.reset ();
   report_ = Report ();
@@ -76,7 +76,7 @@ ERKPA<PointNT>::makeField ()
   PointView view;
   Outcome outcome = viewInput (view);
   if (outcome.ok ())
-    outcome = buildField (view, options_, make_search, field_, report_, progress_);
+    outcome = buildField (view, options_, make_search, field_, report_, progress);
   if (outcome.ok ())
     reportPoints (getClassName (), report_, options_);
   return outcome;
@@ -86,12 +86,14 @@ template <typename PointNT>
 bool
 ERKPA<PointNT>::makeMesh (TriangleMesh &mesh)
 {
+  // Only a field by collocation takes long to make.
+  const double share = options_.field.interpolation == Interpolation::COLLOCATION ? 0.5 : 0.0;
   return guarded (
       [&]
       {
-        Outcome outcome = makeField ();
+        Outcome outcome = makeField (partOf (progress_, 0.0, share));
         if (outcome.ok ())
-          outcome = buildMesh (*field_, options_, mesh, report_, progress_);
+          outcome = buildMesh (*field_, options_, mesh, report_, partOf (progress_, share, 1.0 - share));
         if (outcome.ok ())
           reportRounding (getClassName (), *field_, report_);
         return outcome;
@@ -129,7 +131,7 @@ template <typename PointNT>
 ImplicitField::ConstPtr
 ERKPA<PointNT>::computeField ()
 {
-  guarded ([this] { return makeField (); });
+  guarded ([this] { return makeField (progress_); });
   return field_;
 }
 
