@@ -20,12 +20,14 @@ template <typename T>
 void
 readAs (const CloudBytes &cloud, std::size_t offset, std::vector<float> &values)
 {
-  for (std::size_t i = 0; i < cloud.size; ++i)
-  {
-    T value;
-    std::memcpy (&value, cloud.data + i * cloud.point_step + offset, sizeof (T));
-    values[i] = static_cast<float> (value);
-  }
+  values.clear ();
+  for (std::size_t row = 0; row < cloud.height; ++row)
+    for (std::size_t column = 0; column < cloud.width; ++column)
+    {
+      T value;
+      std::memcpy (&value, cloud.data + row * cloud.row_step + column * cloud.point_step + offset, sizeof (T));
+      values.push_back (static_cast<float> (value));
+    }
 }
 
 } // namespace
@@ -43,12 +45,16 @@ readField (const CloudBytes &cloud, const std::string &name, std::vector<float> 
     names += (names.empty () ? "" : ", ") + other.name;
   if (field == cloud.fields.end ())
     return {Status::INVALID_SETTING, "the cloud has no field \"" + name + "\": it has " + names};
-  values.assign (cloud.size, 0.0f);
+  const Outcome bad{Status::INVALID_SETTING, "the field \"" + name + "\" of the cloud is not a number of a known type"};
+  const auto size = static_cast<std::size_t> (pcl::getFieldSize (field->datatype));
+  if (size == 0 || field->offset + size > cloud.point_step)
+    return bad;
   switch (field->datatype)
   {
     case Field::INT8:
       readAs<std::int8_t> (cloud, field->offset, values);
       break;
+    case Field::BOOL:
     case Field::UINT8:
       readAs<std::uint8_t> (cloud, field->offset, values);
       break;
@@ -64,12 +70,20 @@ readField (const CloudBytes &cloud, const std::string &name, std::vector<float> 
     case Field::UINT32:
       readAs<std::uint32_t> (cloud, field->offset, values);
       break;
+    case Field::INT64:
+      readAs<std::int64_t> (cloud, field->offset, values);
+      break;
+    case Field::UINT64:
+      readAs<std::uint64_t> (cloud, field->offset, values);
+      break;
+    case Field::FLOAT32:
+      readAs<float> (cloud, field->offset, values);
+      break;
     case Field::FLOAT64:
       readAs<double> (cloud, field->offset, values);
       break;
     default:
-      readAs<float> (cloud, field->offset, values);
-      break;
+      return bad;
   }
   return {};
 }
@@ -153,7 +167,9 @@ runAs (const pcl::PCLPointCloud2 &input, const Options &options, const ProgressC
   const typename pcl::PointCloud<PointT>::Ptr cloud (new pcl::PointCloud<PointT>);
   if (!input.data.empty ()) // PCL's conversion is undefined without points
     pcl::fromPCLPointCloud2 (input, *cloud);
-  const CloudBytes bytes{input.fields, input.data.data (), input.point_step, cloud->size ()};
+  const bool is_empty = input.data.empty ();
+  const CloudBytes bytes{input.fields,   input.data.data (),         input.point_step,
+                         input.row_step, is_empty ? 0 : input.width, is_empty ? 0 : input.height};
   std::vector<float> radii, confidences;
   Outcome outcome = readField (bytes, options.points.radius_field, radii);
   if (outcome.ok ())

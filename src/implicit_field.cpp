@@ -9,6 +9,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <stdexcept>
 #include <utility>
 
 namespace erkpa
@@ -61,14 +62,19 @@ ImplicitField::ImplicitField (std::shared_ptr<const OrientedPoints> points, Neig
   support_size_ = std::make_shared<const SupportSize> (*points_, options_, spacing);
   warpPositions ();
   spacing_ = options_.warp ? measureSpacing (warped_positions_, *warped_search_) : spacing;
+  typical_radius_ = support_size_->typical () * (options_.warp && spacing > 0.0 ? spacing_ / spacing : 1.0);
   feature_size_ = spacing_ * std::sqrt (static_cast<double> (k) / CLEAN_SUPPORT);
   pencils_ = std::make_shared<const std::vector<Pencil>> (findPencils (options_.sharp_surfaces, spacing));
   if (options_.constraint != Constraint::OFFSURFACE)
     return;
   offsets_ = support_size_->radiiOfNodes (*search_, threads);
+  // All searches reach as far as the largest offset: a stray point must not be the one that says how far.
+  constexpr double FAR = 4.0;
+  const bool by_nearest = support_size_->kind () == SupportSize::Kind::NEAREST;
+  const double most = by_nearest ? FAR * support_size_->typical () : HUGE_VAL;
   for (float &offset : offsets_)
   {
-    offset = static_cast<float> (options_.offset * static_cast<double> (offset));
+    offset = static_cast<float> (options_.offset * std::min (static_cast<double> (offset), most));
     largest_offset_ = std::max (largest_offset_, static_cast<double> (offset));
   }
 }
@@ -98,13 +104,9 @@ ImplicitField::nodeValue (int node, int side) const
 void
 ImplicitField::setNodeValues (std::vector<double> values)
 {
+  if (values.size () != points_->size () * static_cast<std::size_t> (valuesPerNode ()))
+    throw std::invalid_argument ("setNodeValues needs a value for each node and off-surface point");
   values_ = std::move (values);
-}
-
-double
-ImplicitField::typicalRadius () const
-{
-  return support_size_->typical ();
 }
 
 Outcome
@@ -118,6 +120,8 @@ ImplicitField::checkOptions (const FieldOptions &options)
                 "most 1");
   if (options.enrichment == EnrichmentType::JUMP && options.constraint != Constraint::FUNCTIONAL)
     return bad ("the jump enrichment is for functional constraints, whose values jump across an edge: use the kink");
+  if (options.constraint == Constraint::OFFSURFACE && options.offset >= options.flatten)
+    return bad ("the off-surface points lie beyond the flattened supports: use a smaller offset or a larger flatten");
   const bool is_singular = options.kernel == KernelType::SINGULAR && !options.user_kernel;
   if (is_singular && options.interpolation != Interpolation::NONE)
     return bad ("the singular kernel interpolates by itself: leave interpolation at none, or take another kernel");

@@ -6,6 +6,9 @@
 
 #include <erkpa/implicit_field.h>
 
+#include <Eigen/LU>
+
+#include <cmath>
 #include <cstddef>
 
 namespace erkpa
@@ -53,6 +56,13 @@ public:
   support () const
   {
     return support_;
+  }
+
+  /** \brief How long something of \a length near the point last evaluated was before the warp. */
+  double
+  unwarpedLength (double length) const
+  {
+    return warp_ != nullptr ? length * std::cbrt (std::abs (unwarping_.determinant ())) : length;
   }
 
   /** \brief Attributes at the point last evaluated: the nodes' own, by kernel weight. */

@@ -261,7 +261,11 @@ chooseVoxelSize (const ImplicitField &field, const PolygonizerOptions &options)
     return options.voxel_size;
   if (options.resolution > 0)
     return extentOf (field).maxCoeff () / options.resolution;
-  return options.voxel_per_feature * field.featureSize ();
+  // A grid node further from the surface than supports reach would see no field.
+  constexpr double OF_FLATTENED = 0.3;
+  const double flatten = field.options ().flatten;
+  const double voxel = options.voxel_per_feature * field.featureSize ();
+  return flatten < 1.0 ? std::min (voxel, OF_FLATTENED * flatten * field.typicalRadius ()) : voxel;
 }
 
 Outcome

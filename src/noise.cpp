@@ -31,7 +31,8 @@ visitSample (const std::vector<Eigen::Vector3f> &positions, const NeighborSearch
     for (std::size_t j = 0; j < indices.size (); ++j)
       order.emplace_back (squared[j], indices[j]);
     std::sort (order.begin (), order.end ());
-    visit (order);
+    if (!order.empty ())
+      visit (order);
   }
 }
 

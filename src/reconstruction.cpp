@@ -2,10 +2,12 @@
 #include <erkpa/reconstruction.h>
 
 #include "support.h"
+#include "support_size.h"
 #include "text.h"
 
 #include <algorithm>
 #include <chrono>
+#include <cmath>
 #include <memory>
 #include <string>
 
@@ -46,8 +48,9 @@ collect (const PointView &view, const SearchFactory &make_search, OrientedPoints
     return outcome;
   if (points.size () <= Support::MIN_NODES)
     return {Status::TOO_FEW_POINTS, "the input has " + std::to_string (points.size ()) +
-                                        " distinct, finite points of " + std::to_string (report.points.read) +
-                                        " read: a surface needs at least " + std::to_string (Support::MIN_NODES + 1)};
+                                        " distinct, finite points of " + std::to_string (report.points.read) + " read" +
+                                        (report.points.no_confidence > 0 ? " that have a positive confidence" : "") +
+                                        ": a surface needs at least " + std::to_string (Support::MIN_NODES + 1)};
   search = make_search ? make_search (points) : makeKdTreeSearch (points.positions);
   return {};
 }
@@ -56,17 +59,23 @@ collect (const PointView &view, const SearchFactory &make_search, OrientedPoints
 Outcome
 checkRadius (const ImplicitField &field)
 {
-  const double radius = field.typicalRadius ();
-  if (!(radius > 0.0))
-    return {Status::INVALID_SETTING, "the function of the support radius is not positive at the points"};
+  if (field.supportSize ().kind () == SupportSize::Kind::NEAREST)
+    return {};
   float size = 0.0f;
   for (const Eigen::Vector3f &p : field.points ().positions)
     size = std::max (size, p.norm ());
-  constexpr double FAR = 20.0;
-  if (radius <= FAR * static_cast<double> (size))
-    return {};
-  return {Status::INVALID_SETTING, "the support radius is far larger than the cloud, which fits in a ball of radius " +
-                                       toText (size) + ": use a smaller one, or 0 to use k neighbours"};
+  constexpr float FAR = 20.0f;
+  for (const float radius : field.supportSize ().radiiOfNodes (field.search (), 1))
+  {
+    if (!(radius > 0.0f) || !std::isfinite (radius))
+      return {Status::INVALID_SETTING, "the function of the support radius is " + toText (radius) +
+                                           " at a point: it must be positive and finite everywhere"};
+    if (radius > FAR * size)
+      return {Status::INVALID_SETTING, "the support radius of " + toText (radius) +
+                                           " is far larger than the cloud, which fits in a ball of radius " +
+                                           toText (size) + ": use a smaller one, or 0 to use k neighbours"};
+  }
+  return {};
 }
 
 Outcome
@@ -82,6 +91,9 @@ Outcome
 checkOptions (const PointView &view, const FieldOptions &options)
 {
   Outcome outcome = ImplicitField::checkOptions (options);
+  if (outcome.ok () && !view.shapes.empty () && options.flatten < 1.0)
+    return {Status::INVALID_SETTING,
+            "the points have support shapes of their own, which exclude flatten: give one of them"};
   const bool has_other =
       options.k > 0 || options.radius > 0.0 || options.radius_ramp.axis >= 0 || options.radius_function;
   if (outcome.ok () && has_other && !view.radii.empty ())
@@ -91,18 +103,30 @@ checkOptions (const PointView &view, const FieldOptions &options)
   return outcome;
 }
 
+Outcome
+checkWarp (const OrientedPoints &points, const SpaceWarp *warp)
+{
+  for (std::size_t i = 0; warp != nullptr && i < points.size (); ++i)
+    if (!warp->map (points.positions[i].cast<double> () + points.origin).cast<float> ().allFinite ())
+      return {Status::INVALID_SETTING, "the space warp takes a point of the cloud to a place that is not finite"};
+  return {};
+}
+
 /** \brief The field over points with normals. */
 Outcome
 makeField (const std::shared_ptr<const OrientedPoints> &points, const NeighborSearch::ConstPtr &search,
            const Options &options, ImplicitField::ConstPtr &field, Report &report, const ProgressCallback &progress)
 {
   const StageClock clock (report.seconds_field);
+  Outcome outcome = checkWarp (*points, options.field.warp.get ());
+  if (!outcome.ok ())
+    return outcome;
   const auto made = std::make_shared<ImplicitField> (points, search, options.field, options.polygonizer.threads);
   const bool by_nearest = made->options ().k > 0;
   report.k = by_nearest ? made->options ().k : 0;
-  report.radius = by_nearest ? 0.0 : made->typicalRadius ();
+  report.radius = by_nearest ? 0.0 : made->supportSize ().typical ();
   report.spacing = made->spacing ();
-  Outcome outcome = checkField (*made);
+  outcome = checkField (*made);
   if (outcome.ok () && options.field.interpolation == Interpolation::COLLOCATION)
     outcome = interpolateNodes (*made, options.polygonizer.threads, report.collocation, progress);
   if (outcome.ok ())

@@ -196,12 +196,16 @@ SharpSurface::ConstPtr
 makeSharpFunction (std::function<double (const Eigen::Vector3d &)> theta,
                    std::function<Eigen::Vector3d (const Eigen::Vector3d &)> theta_gradient)
 {
+  if (!theta || !theta_gradient)
+    return nullptr;
   return std::make_shared<SharpFunction> (std::move (theta), std::move (theta_gradient));
 }
 
 SharpSurface::ConstPtr
 makeWarpedSharpSurface (SharpSurface::ConstPtr surface, SpaceWarp::ConstPtr back)
 {
+  if (!surface || !back)
+    return nullptr;
   return std::make_shared<WarpedSharpSurface> (std::move (surface), std::move (back));
 }
 

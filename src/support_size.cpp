@@ -41,7 +41,10 @@ medianRadius (const OrientedPoints &points, RadiusOfT radius_of)
   const std::size_t step = std::max<std::size_t> (1, points.size () / SAMPLE);
   std::vector<double> radii;
   for (std::size_t i = 0; i < points.size (); i += step)
-    radii.push_back (radius_of (i));
+  {
+    const double radius = radius_of (i);
+    radii.push_back (radius > 0.0 ? radius : 0.0); // nothing that is no number must be sorted
+  }
   const auto middle = radii.begin () + static_cast<std::ptrdiff_t> (radii.size () / 2);
   std::nth_element (radii.begin (), middle, radii.end ());
   return *middle;

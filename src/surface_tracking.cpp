@@ -27,7 +27,7 @@ isInReach (const LocalField &local, const PolygonizerOptions &options, double vo
   const double offset = std::abs (options.iso_level);
   // A cell as large as the support or larger reaches beyond it, even where nodes lie in the cell.
   return support.quartileDistance () <= options.reach * support.radius () + offset ||
-         support.nearestDistance () <= std::sqrt (3.0) * voxel_size + offset;
+         support.nearestDistance () <= local.unwarpedLength (std::sqrt (3.0) * voxel_size) + offset;
 }
 
 SurfaceTracker::SurfaceTracker (const ImplicitField &field, const PolygonizerOptions &options, SparseGrid &grid,
@@ -239,7 +239,7 @@ SurfaceTracker::project (LocalField &local, Eigen::Vector3d &position) const
     if (!sample.isDefined () || !(slope > 0.0) || !isInReach (local, options_, grid_.voxelSize ()))
       return false;
     const Eigen::Vector3d move = (options_.iso_level - sample.value) / slope * sample.gradient;
-    if (!(move.norm () < sample.radius + std::abs (options_.iso_level)))
+    if (!(local.unwarpedLength (move.norm ()) < sample.radius + std::abs (options_.iso_level)))
       return false;
     position += move;
     if (move.norm () < 0.1 * grid_.voxelSize ())

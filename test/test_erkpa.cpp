@@ -9,6 +9,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <limits>
 #include <memory>
 
@@ -620,6 +621,18 @@ TEST (Erkpa, RefusesWhatIsNotGivenForEveryPoint)
   EXPECT_EQ (status ([] (Stage &s) { s.setConfidences (std::vector<float> (500, 0.0f)); }), Status::TOO_FEW_POINTS);
   EXPECT_EQ (status ([] (Stage &s) { s.setRadiusFunction ([] (const Eigen::Vector3d &) { return -1.0; }); }),
              Status::INVALID_SETTING);
+  const auto huge_on_one_side = [] (const Eigen::Vector3d &x) { return x.z () > 0.3 ? 1e30 : 0.3; };
+  EXPECT_EQ (status ([&] (Stage &s) { s.setRadiusFunction (huge_on_one_side); }), Status::INVALID_SETTING);
+  EXPECT_EQ (status (
+                 [] (Stage &s)
+                 {
+                   s.setSupportShapes (std::vector<Eigen::Matrix3f> (500, Eigen::Matrix3f::Identity ()));
+                   s.setFlatten (0.5);
+                 }),
+             Status::INVALID_SETTING);
+  const auto nowhere = erkpa::makeSpaceWarp ([] (const Eigen::Vector3d &x) { return Eigen::Vector3d (x / 0.0); },
+                                             [] (const Eigen::Vector3d &) { return Eigen::Matrix3d::Identity (); });
+  EXPECT_EQ (status ([&] (Stage &s) { s.setSpaceWarp (nowhere); }), Status::INVALID_SETTING);
 }
 
 TEST (Erkpa, InterpolatesByCollocation)
@@ -669,4 +682,46 @@ TEST (Erkpa, RemembersEverySetting)
   EXPECT_EQ (erkpa.getRadiusRamp ().axis, 2);
   EXPECT_EQ (erkpa.getConfidenceField (), "trust");
   EXPECT_EQ (erkpa.getOptions ().points.confidence_field, "trust");
+}
+
+TEST (Erkpa, LetsNothingThroughThatACallerThrows)
+{
+  ERKPA<pcl::PointNormal> erkpa;
+  erkpa.setInputCloud (shapes::cloud<pcl::PointNormal> (shapes::sphere (500)));
+  erkpa.setRadiusFunction ([] (const Eigen::Vector3d &) -> double { throw 3; });
+  pcl::PolygonMesh mesh = usedMesh ();
+  EXPECT_NO_THROW (erkpa.reconstruct (mesh));
+  expectEmpty (mesh);
+  EXPECT_EQ (erkpa.getStatus (), Status::INTERNAL_ERROR);
+  EXPECT_EQ (erkpa.getField (), nullptr);
+}
+
+TEST (Erkpa, ReadsFieldsOfRunTimeCloudsWithPaddedRowsAndRefusesBadOnes)
+{
+  pcl::PCLPointCloud2 packed, padded;
+  const auto points = shapes::cloud<pcl::PointNormal> (shapes::sphere (3000));
+  for (pcl::PointNormal &point : *points)
+    point.curvature = 0.25f + 0.05f * point.z;
+  pcl::toPCLPointCloud2 (*points, packed);
+  padded = packed;
+  padded.width = 100;
+  padded.height = 30;
+  padded.row_step = 100 * packed.point_step + 24;
+  padded.data.assign (std::size_t (padded.row_step) * padded.height, 0xff);
+  for (std::size_t row = 0; row < 30; ++row)
+    std::copy_n (packed.data.begin () + static_cast<std::ptrdiff_t> (row * 100 * packed.point_step),
+                 100 * packed.point_step, padded.data.begin () + static_cast<std::ptrdiff_t> (row * padded.row_step));
+  erkpa::Options options;
+  options.points.radius_field = "curvature";
+  pcl::PolygonMesh of_packed, of_padded;
+  erkpa::Report report;
+  ASSERT_TRUE (erkpa::reconstruct (packed, options, of_packed, report).ok ());
+  const erkpa::Outcome outcome = erkpa::reconstruct (padded, options, of_padded, report);
+  ASSERT_TRUE (outcome.ok ()) << outcome.message;
+  EXPECT_EQ (of_packed.cloud.data, of_padded.cloud.data);
+
+  for (pcl::PCLPointField &field : packed.fields)
+    if (field.name == "curvature")
+      field.offset = 1000000;
+  EXPECT_EQ (erkpa::reconstruct (packed, options, of_packed, report).status, Status::INVALID_SETTING);
 }

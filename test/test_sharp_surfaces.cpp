@@ -275,3 +275,31 @@ TEST_F (WarpedField, IsUndefinedWhereTheWarpHasNoOrigin)
   EXPECT_TRUE (field->sample ({std::tanh (1.0), 0.0, 0.0}).isDefined ());
   EXPECT_FALSE (field->sample ({1.5, 0.0, 0.0}).isDefined ());
 }
+
+TEST_F (WarpedField, KeepsItsBordersWhereTheWarpEnlargesOrShrinks)
+{
+  // Half a sphere is scanned: no scale of space may make it a whole one.
+  shapes::Samples half;
+  const shapes::Samples sphere = shapes::sphere (4000);
+  for (std::size_t i = 0; i < sphere.size (); ++i)
+    if (sphere.positions[i].z () > 0.0)
+      half.add (sphere.positions[i], sphere.normals[i]);
+  const auto areaOf = [&] (double scale)
+  {
+    erkpa::Options options;
+    if (scale != 1.0)
+      options.field.warp =
+          erkpa::makeSpaceWarp ([scale] (const Vector3d &x) { return Vector3d (scale * x); }, [scale] (const Vector3d &)
+                                { return Eigen::Matrix3d (scale * Eigen::Matrix3d::Identity ()); });
+    const auto field = shapes::field (half, options.field);
+    erkpa::TriangleMesh mesh;
+    erkpa::Report report;
+    EXPECT_TRUE (erkpa::buildMesh (*field, options, mesh, report).ok ());
+    EXPECT_MESH_CONTRACT (mesh, false);
+    EXPECT_GT (report.topology.boundary_edges, 0u);
+    return shapes::area (mesh) / (scale * scale);
+  };
+  const double area = areaOf (1.0);
+  EXPECT_NEAR (areaOf (100.0), area, 0.01 * area);
+  EXPECT_NEAR (areaOf (0.01), area, 0.01 * area);
+}

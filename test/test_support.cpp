@@ -8,6 +8,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <stdexcept>
 #include <string>
 
 using erkpa::Constraint;
@@ -216,4 +217,35 @@ TEST_F (SupportOf, OneCloudIsChosenInOneWayOnly)
   singular.interpolation = Interpolation::COLLOCATION;
   for (const FieldOptions &options : {flat, offset, singular})
     EXPECT_EQ (ImplicitField::checkOptions (options).status, erkpa::Status::INVALID_SETTING);
+}
+
+TEST_F (SupportOf, OneStrayPointDoesNotWidenTheOffsetsOfAll)
+{
+  shapes::Samples samples = shapes::sphere (3000);
+  samples.add ({50.0, 0.0, 0.0}, Vector3d::UnitX ());
+  FieldOptions options;
+  options.constraint = Constraint::OFFSURFACE;
+  const auto field = shapes::field (samples, options);
+  EXPECT_LT (field->largestOffset (), field->typicalRadius ()); // every search looks that much further
+}
+
+TEST_F (SupportOf, DefaultVoxelSeesFlattenedSupports)
+{
+  for (const double flatten : {0.5, 0.3})
+  {
+    erkpa::Options options;
+    options.field.flatten = flatten;
+    const auto field = shapes::field (shapes::sphere (1500), options.field);
+    erkpa::TriangleMesh mesh;
+    erkpa::Report report;
+    ASSERT_TRUE (erkpa::buildMesh (*field, options, mesh, report).ok ());
+    EXPECT_MESH_CONTRACT (mesh, true);
+    EXPECT_EQ (report.topology.euler, 2);
+  }
+}
+
+TEST_F (SupportOf, ValuesMustBeGivenForAllNodes)
+{
+  const auto field = shapes::field (shapes::sphere (500));
+  EXPECT_THROW (field->setNodeValues ({1.0, 2.0}), std::invalid_argument);
 }

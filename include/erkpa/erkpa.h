@@ -90,7 +90,8 @@ public:
     confidences_ = confidences;
   }
 
-  /** \brief The shapes of the points' supports: |S (x - x_i)| < radius, no singular value of S below 1. */
+  /** \brief The shapes of the points' supports: |S (x - x_i)| < radius, no singular value of S below 1. They exclude
+   * setFlatten (). Where they are flat, the voxel must be well below their thickness. */
   void
   setSupportShapes (const std::vector<Eigen::Matrix3f> &shapes)
   {
@@ -158,7 +159,8 @@ public:
   }
 
   /** \brief All settings at once, as the command line and other front ends fill them: the view point and the sharp
-   * surfaces are those of the options from then on, and getSharpEdges () knows none. */
+   * surfaces are those of the options from then on, and getSharpEdges () knows none. What is given point by point
+   * (setRadii () and its kin) stays. */
   void
   setOptions (const Options &options);
 

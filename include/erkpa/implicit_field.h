@@ -43,7 +43,9 @@ enum class Interpolation
   COLLOCATION ///< interpolated by node values that make it so, from a linear system (eq. 26-27)
 };
 
-/** \brief The support radius at a point of the input's frame, in the input's unit of length. */
+/** \brief The support radius at a point of the input's frame, in the input's unit of length.
+ *
+ * Positive, finite and continuous everywhere, for it is asked beyond the cloud, too; called from several threads. */
 using RadiusFunction = std::function<double (const Eigen::Vector3d &)>;
 
 /** \brief A support radius that changes linearly along an axis, over the extent of the nodes (paper, fig. 6c). */
@@ -71,8 +73,8 @@ struct FieldOptions
   RadiusRamp radius_ramp; ///< support radius along an axis
   RadiusFunction radius_function;                     ///< support radius as a function of position; continuous
   std::vector<SharpSurface::ConstPtr> sharp_surfaces; ///< where the gradient of the field may jump
-  SpaceWarp::ConstPtr warp; ///< deforms the field: f (warp^-1 (x)); null = none. Nodes and sharp surfaces are given
-                            ///< undeformed
+  SpaceWarp::ConstPtr warp; ///< deforms the field: f (warp^-1 (x)); null = none. Nodes, sharp surfaces, radii and the
+                            ///< values of f are those before it
 };
 
 /** \brief The field and its gradient at one point. */
@@ -131,7 +133,7 @@ public:
   FieldSample
   sample (const Eigen::Vector3d &x) const;
 
-  /** \brief Many points at once; the same results as sample() one by one.
+  /** \brief Many points at once; the same results as sample() one by one, in a warped field up to rounding.
    * \param[in] points positions in the input's frame
    * \param[out] samples one per position
    * \param[in] threads 0 = all processors
@@ -200,7 +202,8 @@ public:
     return largest_offset_;
   }
 
-  /** \brief Give the nodes other values: \a values[valuesPerNode () * node + s], s = 0, 1, 2 for side 0, 1, -1. */
+  /** \brief Give the nodes other values: \a values[valuesPerNode () * node + s], s = 0, 1, 2 for side 0, 1, -1. Throws
+   * std::invalid_argument where it is not one for each. */
   void
   setNodeValues (std::vector<double> values);
 
@@ -239,9 +242,12 @@ public:
     return feature_size_;
   }
 
-  /** \brief The support radius at a typical node. */
+  /** \brief The support radius at a typical node, as long as it is on the surface (warped where the field is). */
   double
-  typicalRadius () const;
+  typicalRadius () const
+  {
+    return typical_radius_;
+  }
 
 private:
   void
@@ -258,6 +264,7 @@ private:
   std::vector<Eigen::Vector3f> warped_positions_;
   NeighborSearch::ConstPtr warped_search_;
   std::shared_ptr<const std::vector<Pencil>> pencils_;
+  double typical_radius_ = 0.0;
   double spacing_ = 0.0;
   double feature_size_ = 0.0;
 };

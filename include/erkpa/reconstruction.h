@@ -35,8 +35,8 @@ struct Report
 {
   PointCounts points;
   Orientation orientation = Orientation::NONE;
-  int k = 0;           ///< neighbours of the support in force; 0 with a constant radius
-  double radius = 0.0; ///< constant support radius in force; 0 with k
+  int k = 0;           ///< neighbours of the support in force; 0 with a radius
+  double radius = 0.0; ///< support radius in force, the median where it varies; 0 with k
   CollocationReport collocation;
   double spacing = 0.0; ///< typical distance between neighbouring points
   PolygonizerReport polygonizer;

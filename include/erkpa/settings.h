@@ -53,7 +53,7 @@ public:
     return options_.field.radius_ramp;
   }
 
-  /** \brief The support radius as a continuous function of position; nullptr for none. */
+  /** \brief The support radius as a function of position, see RadiusFunction; nullptr for none. */
   void
   setRadiusFunction (const RadiusFunction &function)
   {
@@ -166,13 +166,20 @@ public:
     options_.field.user_kernel.reset ();
   }
 
-  /** \brief The same with a kernel of your own. */
+  /** \brief The same with a kernel of your own; null for none. */
   void
   setKernel (const Kernel::ConstPtr &kernel)
   {
     options_.field.user_kernel = kernel;
   }
 
+  const Kernel::ConstPtr &
+  getUserKernel () const
+  {
+    return options_.field.user_kernel;
+  }
+
+  /** \brief The kernel in force where there is none of your own. */
   KernelType
   getKernel () const
   {
@@ -231,7 +238,7 @@ public:
     return options_.polygonizer.resolution;
   }
 
-  /** \brief The surface is f = iso_level; in the cloud's unit of length, positive outside. */
+  /** \brief The surface is f = iso_level; in the cloud's unit of length (before a warp), positive outside. */
   void
   setIsoLevel (double iso_level)
   {

@@ -61,7 +61,7 @@ private:
   double offset_;
 };
 
-/** \brief A sharp surface from a function θ and its gradient. */
+/** \brief A sharp surface from a function θ and its gradient; null where one of them is missing. */
 SharpSurface::ConstPtr
 makeSharpFunction (std::function<double (const Eigen::Vector3d &)> theta,
                    std::function<Eigen::Vector3d (const Eigen::Vector3d &)> theta_gradient);
@@ -69,6 +69,7 @@ makeSharpFunction (std::function<double (const Eigen::Vector3d &)> theta,
 /** \brief A sharp surface seen through a map of space: θ(map (x)), for example a plane that is twisted.
  * \param[in] surface the surface before the warp
  * \param[in] back maps the space of the cloud to that of \a surface (the twist undone)
+ * \return null where one of them is
  */
 SharpSurface::ConstPtr
 makeWarpedSharpSurface (SharpSurface::ConstPtr surface, SpaceWarp::ConstPtr back);

@@ -16,6 +16,7 @@ struct RawCloud
 {
   pcl::PCLPointCloud2 cloud;                 ///< at least x, y, z
   std::optional<Eigen::Vector3d> view_point; ///< where the sensor stood, if the file says so
+  bool has_face_normals = false;             ///< the file has no normals: those here are from its faces
 };
 
 /** \brief Reads a .pcd, .ply, .xyz, .xyzn, .pwn, .obj or .off file.

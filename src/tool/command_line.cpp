@@ -292,6 +292,9 @@ takeFileNames (const std::vector<std::string> &names, CommandLine &line)
                      readableFormats ());
   const bool repeats = (!line.output.empty () && (line.report == line.output || line.values == line.output)) ||
                        (!line.report.empty () && line.report == line.values);
+  const bool overwrites = !line.values.empty () && (line.values == line.query || line.values == line.input);
+  if (overwrites)
+    throw ToolError ("option -evaluate would write over " + line.values + ", which it reads; give another name");
   if (repeats)
     throw ToolError ("OUTPUT, -report and -evaluate must not write the same file; give them different names");
 }

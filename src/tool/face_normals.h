@@ -4,6 +4,7 @@
 #include <Eigen/Core>
 
 #include <cstddef>
+#include <utility>
 #include <vector>
 
 namespace erkpa::tool
@@ -21,13 +22,15 @@ public:
   void
   add (const std::vector<std::size_t> &polygon);
 
-  /** \brief One unit normal per vertex; zero where no face says anything. Empty without faces. */
+  /** \brief One unit normal per vertex; zero where no face says anything. Empty without faces, and where the faces do
+   * not agree about the outside: neighbours run along a common edge in opposite directions. */
   std::vector<Eigen::Vector3d>
   normals () const;
 
 private:
   const std::vector<Eigen::Vector3d> &positions_;
   std::vector<Eigen::Vector3d> sums_;
+  std::vector<std::pair<std::size_t, std::size_t>> edges_; // directed
 };
 
 } // namespace erkpa::tool

@@ -70,9 +70,18 @@ public:
     }
     cloud.width = static_cast<std::uint32_t> (positions_.size ());
     cloud.height = 1;
-    if (normals_.empty ())
-      appendNormals (normalsOfFaces (), cloud);
+    if (!normals_.empty ())
+      return cloud;
+    const std::vector<Eigen::Vector3d> normals = normalsOfFaces ();
+    has_face_normals_ = !normals.empty ();
+    appendNormals (normals, cloud);
     return cloud;
+  }
+
+  bool
+  hasFaceNormals () const
+  {
+    return has_face_normals_;
   }
 
 private:
@@ -130,6 +139,7 @@ private:
   readPolygon (const Tokens &tokens)
   {
     polygons_.emplace_back ();
+    has_corners_ = true; // normals that come later do not belong to the vertices in their order
     for (std::size_t i = 1; i < tokens.size (); ++i)
       polygons_.back ().push_back (index (tokens[i].substr (0, tokens[i].find ('/')), positions_.size ()));
   }
@@ -170,6 +180,7 @@ private:
   std::vector<std::size_t> normal_of_;
   std::vector<std::vector<std::size_t>> polygons_; // without normals
   bool has_corners_ = false;
+  bool has_face_normals_ = false;
 };
 
 } // namespace
@@ -182,6 +193,7 @@ readObj (std::string_view bytes, const std::string &path)
   reader.read ();
   RawCloud result;
   result.cloud = reader.makeCloud ();
+  result.has_face_normals = reader.hasFaceNormals ();
   return result;
 }
 

@@ -84,6 +84,7 @@ private:
       normals.has_view_point = true;
       normals.view_point = *raw.view_point;
     }
+    has_face_normals_ = raw.has_face_normals;
     times_.read = step.done (static_cast<std::size_t> (cloud.width) * cloud.height, "points");
     return cloud;
   }
@@ -119,6 +120,8 @@ private:
     if (points.not_finite + points.duplicate > 0)
       print_info ("  left out %zu points that are not finite and %zu that repeat another\n", points.not_finite,
                   points.duplicate);
+    if (has_face_normals_)
+      print_info ("  took the normals from the faces of the file\n");
     const bool is_view_point = report_.orientation == Orientation::VIEW_POINT;
     if (points.without_normal > 0)
       print_info ("  estimated %zu normals, oriented %s\n", points.without_normal,
@@ -190,6 +193,7 @@ private:
   CommandLine line_;
   std::vector<Eigen::Vector3d> queries_;
   double rounding_ = 0.0;
+  bool has_face_normals_ = false;
   pcl::PolygonMesh mesh_;
   ImplicitField::ConstPtr field_;
   Report report_;

@@ -169,8 +169,11 @@ readOff (std::string_view bytes, const std::string &path)
   layOutOff (keyword, tokens, result.cloud);
   readRows (scanner, count, result.cloud);
   setCount (result.cloud, count);
-  if (!keyword.has_normals)
-    appendNormals (readFaces (scanner, faces, result.cloud), result.cloud);
+  if (keyword.has_normals)
+    return result;
+  const std::vector<Eigen::Vector3d> normals = readFaces (scanner, faces, result.cloud);
+  result.has_face_normals = !normals.empty ();
+  appendNormals (normals, result.cloud);
   return result;
 }
 

@@ -83,8 +83,8 @@ struct CloudBytes
 {
   std::vector<pcl::PCLPointField> fields;
   const std::uint8_t *data;
-  std::size_t point_step;
-  std::size_t size;
+  std::size_t point_step, row_step;
+  std::size_t width, height;
 };
 
 /** \brief The values of a field by name, of any numeric type; nothing is done for an empty name.

@@ -34,6 +34,10 @@ ERKPA<PointNT>::guarded (StepT step)
   {
     outcome_ = {Status::INTERNAL_ERROR, error.what ()};
   }
+  catch (...)
+  {
+    outcome_ = {Status::INTERNAL_ERROR, "a function given by the caller threw something that is no std::exception"};
+  }
   if (!outcome_.ok ())
   {
     field_.reset ();
@@ -52,7 +56,8 @@ ERKPA<PointNT>::viewInput (PointView &view) const
   view.confidences = confidences_;
   view.shapes = shapes_;
   const auto *data = reinterpret_cast<const std::uint8_t *> (input_->points.data ());
-  const CloudBytes bytes{pcl::getFields<PointNT> (), data, sizeof (PointNT), input_->size ()};
+  const CloudBytes bytes{
+      pcl::getFields<PointNT> (), data, sizeof (PointNT), input_->size () * sizeof (PointNT), input_->size (), 1};
   Outcome outcome = readField (bytes, options_.points.radius_field, view.radii);
   return outcome.ok () ? readField (bytes, options_.points.confidence_field, view.confidences) : outcome;
 }
