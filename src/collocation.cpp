@@ -57,12 +57,6 @@ private:
     double value;
   };
 
-  std::size_t
-  indexOf (int node, int side) const
-  {
-    return static_cast<std::size_t> (field_.valuesPerNode () * node + (side < 0 ? 2 : side));
-  }
-
   void
   makeRows (LocalField &local, int node)
   {
@@ -79,13 +73,13 @@ private:
   void
   makeRow (LocalField &local, const Eigen::Vector3d &position, int node, int side)
   {
-    const std::size_t row = indexOf (node, side);
+    const std::size_t row = field_.valueIndex (node, side);
     const auto i = static_cast<Eigen::Index> (row);
     rhs[i] = field_.nodeValue (node, side);
     local.gather (position, 0.0);
     for (const ShapeFunction &shape : local.shapeFunctions (position))
     {
-      rows_[row].push_back ({static_cast<int> (indexOf (shape.node, shape.side)), shape.phi});
+      rows_[row].push_back ({static_cast<int> (field_.valueIndex (shape.node, shape.side)), shape.phi});
       const Eigen::Vector3f &normal = field_.points ().normals[static_cast<std::size_t> (shape.node)];
       rhs[i] -= shape.psi.dot (normal.cast<double> ());
     }

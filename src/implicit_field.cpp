@@ -97,8 +97,7 @@ ImplicitField::nodeValue (int node, int side) const
 {
   if (values_.empty ())
     return side == 0 ? 0.0 : side * offsetOf (node);
-  const int s = side < 0 ? 2 : side;
-  return values_[static_cast<std::size_t> (valuesPerNode () * node + s)];
+  return values_[valueIndex (node, side)];
 }
 
 void

@@ -184,6 +184,14 @@ public:
     return options_.constraint == Constraint::OFFSURFACE ? 3 : 1;
   }
 
+  /** \brief Where the value of a node (side 0) or of its off-surface points (side 1 and -1) stands among all values. */
+  std::size_t
+  valueIndex (int node, int side) const
+  {
+    const auto per_node = static_cast<std::size_t> (valuesPerNode ());
+    return per_node * static_cast<std::size_t> (node) + (side < 0 ? 2u : static_cast<unsigned> (side));
+  }
+
   /** \brief λ of a node (side 0) or its off-surface points (side 1 and -1), a length: 0 and ±κ, or as set. */
   double
   nodeValue (int node, int side = 0) const;
@@ -202,8 +210,8 @@ public:
     return largest_offset_;
   }
 
-  /** \brief Give the nodes other values: \a values[valuesPerNode () * node + s], s = 0, 1, 2 for side 0, 1, -1. Throws
-   * std::invalid_argument where it is not one for each. */
+  /** \brief Give the nodes other values, in the order of valueIndex (). Throws std::invalid_argument where there is not
+   * one for each. */
   void
   setNodeValues (std::vector<double> values);
 

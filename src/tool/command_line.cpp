@@ -3,9 +3,8 @@
 
 #include "cloud_reader.h"
 #include "mesh_writer.h"
+#include "option_list.h"
 #include "option_values.h"
-
-#include <boost/program_options.hpp>
 
 #include <algorithm>
 #include <sstream>
@@ -20,146 +19,6 @@ namespace
 
 constexpr const char *SYNTAX = "erkpa_reconstruct INPUT OUTPUT [options]";
 constexpr const char *FIELD_SYNTAX = "erkpa_reconstruct INPUT -evaluate QUERY.xyz OUT.txt [options]";
-
-/** \brief The value of -evaluate: two words, no more and no fewer, so that file names may follow. */
-class TwoFiles : public po::typed_value<std::vector<std::string>>
-{
-public:
-  TwoFiles () : po::typed_value<std::vector<std::string>> (nullptr)
-  {
-    value_name ("QUERY.xyz OUT.txt");
-  }
-
-  unsigned
-  min_tokens () const override
-  {
-    return 2;
-  }
-
-  unsigned
-  max_tokens () const override
-  {
-    return 2;
-  }
-};
-
-template <typename T>
-std::string
-withDefault (const std::string &text, const T &value, const std::string &meaning = "")
-{
-  std::ostringstream stream;
-  stream << text << " (default: " << value << (meaning.empty () ? "" : ", ") << meaning << ")";
-  return stream.str ();
-}
-
-po::typed_value<std::string> *
-word (const char *name)
-{
-  return po::value<std::string> ()->value_name (name);
-}
-
-po::typed_value<std::vector<std::string>> *
-words (const char *name)
-{
-  return po::value<std::vector<std::string>> ()->value_name (name);
-}
-
-po::options_description
-describeSupport (const FieldOptions &field)
-{
-  po::options_description description;
-  description.add_options () //
-      ("k", word ("N"),
-       withDefault ("the support of the field reaches to the N-th nearest point", field.k, "chosen from the noise")
-           .c_str ())                                                                                              //
-      ("radius", word ("R"), withDefault ("constant support radius instead of k", field.radius, "use k").c_str ()) //
-      ("radius_ramp", word ("axis,from,to"),
-       "instead: a support radius that changes linearly along the axis x, y or z, from the lowest point to the highest "
-       "(default: none)") //
-      ("radius_field", word ("NAME"),
-       "instead: the field of the cloud that holds the support radius of each point (default: none)") //
-      ("flatten", word ("F"),
-       withDefault ("how far the support of a point reaches along its normal, as a share of the radius", field.flatten)
-           .c_str ()) //
-      ("confidence_field", word ("NAME"),
-       "the field of the cloud by which each point is weighed (default: none)") //
-      ("kernel", word ("NAME"),
-       withDefault (listNames (KERNELS) + ": how points are weighed by distance", nameOf (KERNELS, field.kernel),
-                    "the paper's, or wendland_c2 for collocation")
-           .c_str ());
-  return description;
-}
-
-po::options_description
-describeField (const FieldOptions &field)
-{
-  po::options_description description;
-  description.add_options () //
-      ("order", word ("NAME"),
-       withDefault (listNames (ORDERS) + ": what the field reproduces exactly", nameOf (ORDERS, field.order),
-                    "spherical, or linear for functional constraints")
-           .c_str ()) //
-      ("constraint", word ("NAME"),
-       withDefault (listNames (CONSTRAINTS) + ": what the points ask of the field",
-                    nameOf (CONSTRAINTS, field.constraint))
-           .c_str ()) //
-      ("offset", word ("F"),
-       withDefault ("how far off-surface points are from theirs, as a share of the support radius", field.offset)
-           .c_str ()) //
-      ("interpolate", word ("NAME"),
-       withDefault (listNames (INTERPOLATIONS) + ": how the surface is made to pass through the points",
-                    nameOf (INTERPOLATIONS, field.interpolation))
-           .c_str ()) //
-      ("sharp", words ("a,b,c,d"),
-       "a sharp edge where the plane a x + b y + c z + d = 0 cuts the surface; may be repeated (default: none)") //
-      ("sharp_sphere", words ("x,y,z,r"), "the same with a sphere: center and radius (default: none)")           //
-      ("sharp_cylinder", words ("x,y,z,dx,dy,dz,r"),
-       "the same with a cylinder: point on the axis, direction of the axis, radius (default: none)") //
-      ("sharp_cone", words ("x,y,z,dx,dy,dz,angle"),
-       "the same with a cone: apex, direction of the axis, angle between axis and side in radians (default: none)") //
-      ("enrichment", word ("NAME"),
-       withDefault (listNames (ENRICHMENTS) + ": what sharp edges add to the field; jump is for functional constraints",
-                    nameOf (ENRICHMENTS, field.enrichment))
-           .c_str ());
-  return description;
-}
-
-po::options_description
-describeMeshing (const PolygonizerOptions &polygonizer)
-{
-  po::options_description description;
-  description.add_options () //
-      ("voxel", word ("S"),
-       withDefault ("side of a grid cell", polygonizer.voxel_size, "from the spacing of the points").c_str ()) //
-      ("resolution", word ("N"),
-       withDefault ("instead: grid cells along the longest side of the cloud", polygonizer.resolution,
-                    "use voxel")
-           .c_str ())                                                                                             //
-      ("iso", word ("V"), withDefault ("the surface is f = V, positive outside", polygonizer.iso_level).c_str ()) //
-      ("viewpoint", word ("x,y,z"),
-       "where the sensor stood, for the sign of estimated normals (default: as a .pcd or .ply file says; "
-       "without, "
-       "normals point outwards)") //
-      ("threads", word ("N"),
-       withDefault ("number of threads; the mesh does not depend on it", polygonizer.threads,
-                    "all processors")
-           .c_str ()) //
-      ("evaluate", new TwoFiles,
-       "write x y z f gx gy gz at the points of QUERY.xyz, nan where f is not defined (default: "
-       "none)")                                                                                        //
-      ("report", word ("FILE.json"), "also write what was done, and how long it took (default: none)") //
-      ("help,h", "print this text, as -h does") ("version", "print the version");
-  return description;
-}
-
-po::options_description
-describe (const Options &defaults)
-{
-  po::options_description description;
-  description.add (describeSupport (defaults.field));
-  description.add (describeField (defaults.field)).add (describeMeshing (defaults.polygonizer));
-  return description;
-}
 
 /** \brief The words that belong to no option. */
 std::vector<std::string>
@@ -305,7 +164,7 @@ CommandLine
 parseCommandLine (int argc, const char *const *argv)
 {
   CommandLine line;
-  const po::options_description description = describe (line.options);
+  const po::options_description description = listOptions (line.options);
   // no abbreviations, and one dash will do for a long name; short names are there for the sake of unknown
   // options, which would count as file names without them
   using style = po::command_line_style::style_t;
@@ -352,7 +211,7 @@ helpText ()
        << "  INPUT:  " << readableFormats () << "; points with or without normals\n"
        << "  OUTPUT: " << writableFormats () << "\n"
        << "  where options (with one dash or two) are:\n";
-  const po::options_description description = describe (Options ());
+  const po::options_description description = listOptions (Options ());
   for (const auto &option : description.options ())
   {
     const bool has_value = option->semantic ()->max_tokens () > 0;
