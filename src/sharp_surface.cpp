@@ -73,6 +73,27 @@ private:
   SpaceWarp::ConstPtr back_;
 };
 
+class SharpBetween : public SharpSurface
+{
+public:
+  SharpBetween (ConstPtr face, ConstPtr other) : face_ (std::move (face)), other_ (std::move (other)) {}
+
+  double
+  theta (const Eigen::Vector3d &x) const override
+  {
+    return other_->theta (x) - face_->theta (x);
+  }
+
+  Eigen::Vector3d
+  thetaGradient (const Eigen::Vector3d &x) const override
+  {
+    return other_->thetaGradient (x) - face_->thetaGradient (x);
+  }
+
+private:
+  ConstPtr face_, other_;
+};
+
 /** \brief v / |v|; any unit vector for v = 0, where a distance has no gradient. */
 Eigen::Vector3d
 direction (const Eigen::Vector3d &v)
@@ -207,6 +228,23 @@ makeWarpedSharpSurface (SharpSurface::ConstPtr surface, SpaceWarp::ConstPtr back
   if (!surface || !back)
     return nullptr;
   return std::make_shared<WarpedSharpSurface> (std::move (surface), std::move (back));
+}
+
+SharpSurface::ConstPtr
+makeSharpBetween (SharpSurface::ConstPtr face, SharpSurface::ConstPtr other)
+{
+  if (!face || !other)
+    return nullptr;
+  const auto between = std::make_shared<SharpBetween> (face, other);
+  const bool are_planes = dynamic_cast<const SharpPlane *> (face.get ()) != nullptr &&
+                          dynamic_cast<const SharpPlane *> (other.get ()) != nullptr;
+  if (!are_planes)
+    return between;
+  const Eigen::Vector3d zero = Eigen::Vector3d::Zero (), normal = between->thetaGradient (zero);
+  constexpr double PARALLEL = 1e-6;
+  if (!(normal.norm () > PARALLEL))
+    return nullptr;
+  return std::make_shared<SharpPlane> (normal.normalized (), between->theta (zero) / normal.norm ());
 }
 
 Outcome

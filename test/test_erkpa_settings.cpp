@@ -16,12 +16,15 @@ TEST (Erkpa, TakesSharpSurfacesByTheirModelOfSampleConsensus)
   EXPECT_TRUE (erkpa.addSharpEdge (ball, pcl::SACMODEL_NORMAL_PLANE));
   EXPECT_FALSE (erkpa.addSharpEdge (ball, pcl::SACMODEL_CYLINDER));
   EXPECT_FALSE (erkpa.addSharpEdge (ball, pcl::SACMODEL_TORUS));
-  EXPECT_EQ (erkpa.getOptions ().field.sharp_surfaces.size (), 4u);
+  EXPECT_FALSE (erkpa.addSharpEdge (ball, pcl::SACMODEL_PLANE, ball, pcl::SACMODEL_PLANE)); // parallel
+  EXPECT_FALSE (erkpa.addSharpEdge (ball, pcl::SACMODEL_SPHERE, ball, pcl::SACMODEL_CONE));
+  EXPECT_TRUE (erkpa.addSharpEdge (ball, pcl::SACMODEL_SPHERE, ball, pcl::SACMODEL_PLANE));
+  EXPECT_EQ (erkpa.getOptions ().field.sharp_surfaces.size (), 5u);
   EXPECT_EQ (erkpa.getSharpEdges ().size (), 1u); // the plane
   erkpa.addSharpSurface (erkpa::makeSharpFunction ([] (const Eigen::Vector3d &x) { return x.z (); },
                                                    [] (const Eigen::Vector3d &) { return Eigen::Vector3d::UnitZ (); }));
   erkpa.addSharpSurface (nullptr);
-  EXPECT_EQ (erkpa.getOptions ().field.sharp_surfaces.size (), 5u);
+  EXPECT_EQ (erkpa.getOptions ().field.sharp_surfaces.size (), 6u);
   erkpa.setInputCloud (shapes::cloud<pcl::PointNormal> (shapes::sphere (3000)));
   pcl::PolygonMesh mesh;
   erkpa.reconstruct (mesh);

@@ -163,34 +163,71 @@ TEST_F (SharpSurfaces, CoefficientsThatMakeNoSurfaceAreRefusedWithTheirReason)
   }
 }
 
-TEST_F (SharpSurfaces, ConeThroughTheRimMakesACylindersLidSharp)
+namespace
 {
-  // Where lid and wall meet at z = 0.5, r = 0.5, the cone of 45° halves them all around.
-  shapes::Samples can;
+
+/** \brief A tin without bottom: wall r = 0.5, lid z = 0.5. */
+shapes::Samples
+tin ()
+{
+  shapes::Samples samples;
   std::uniform_real_distribution<double> unit (0.0, 1.0);
   for (int i = 0; i < 12000; ++i)
   {
     const double turn = 2.0 * M_PI * unit (random_engine);
     const Vector3d out (std::cos (turn), std::sin (turn), 0.0);
     if (i % 3 == 0)
-      can.add (0.5 * std::sqrt (unit (random_engine)) * out + 0.5 * Vector3d::UnitZ (), Vector3d::UnitZ ());
+      samples.add (0.5 * std::sqrt (unit (random_engine)) * out + 0.5 * Vector3d::UnitZ (), Vector3d::UnitZ ());
     else
-      can.add (0.5 * out + (unit (random_engine) - 0.5) * Vector3d::UnitZ (), out);
+      samples.add (0.5 * out + (unit (random_engine) - 0.5) * Vector3d::UnitZ (), out);
   }
+  return samples;
+}
+
+/** \brief The largest |f| on its rim, with a sharp surface or null. */
+double
+missOnRim (const shapes::Samples &samples, const SharpSurface::ConstPtr &surface)
+{
   FieldOptions options = optionsOf (Order::QUADRATIC, 0, 0.15);
-  const auto rim = [] (const ImplicitField &field)
-  {
-    double largest = 0.0;
-    for (double turn = 0.0; turn < 2.0 * M_PI; turn += 0.05)
-      largest = std::max (largest, std::abs (field.value ({0.5 * std::cos (turn), 0.5 * std::sin (turn), 0.5})));
-    return largest;
-  };
-  const double round = rim (*shapes::field (can, options));
-  options.sharp_surfaces.push_back (
-      surfaceOf (SurfaceModel::CONE, {0.0f, 0.0f, 0.0f, 0.0f, 0.0f, 1.0f, static_cast<float> (M_PI_4)}));
-  const double sharp = rim (*shapes::field (can, options));
+  if (surface)
+    options.sharp_surfaces.push_back (surface);
+  const auto field = shapes::field (samples, options);
+  double largest = 0.0;
+  for (double turn = 0.0; turn < 2.0 * M_PI; turn += 0.05)
+    largest = std::max (largest, std::abs (field->value ({0.5 * std::cos (turn), 0.5 * std::sin (turn), 0.5})));
+  return largest;
+}
+
+} // namespace
+
+TEST_F (SharpSurfaces, ConeOrTheFacesThemselvesMakeTheRimOfACylinderSharp)
+{
+  const shapes::Samples samples = tin ();
+  const double round = missOnRim (samples, nullptr);
   EXPECT_GT (round, 0.01);
-  EXPECT_LT (sharp, 0.1 * round);
+  // the cone of 45 degrees that halves wall and lid all around
+  const auto cone = surfaceOf (SurfaceModel::CONE, {0.0f, 0.0f, 0.0f, 0.0f, 0.0f, 1.0f, static_cast<float> (M_PI_4)});
+  EXPECT_LT (missOnRim (samples, cone), 0.05 * round);
+  const auto wall = surfaceOf (SurfaceModel::CYLINDER, {0.0f, 0.0f, 0.0f, 0.0f, 0.0f, 1.0f, 0.5f});
+  const auto lid = surfaceOf (SurfaceModel::PLANE, {0.0f, 0.0f, 1.0f, -0.5f});
+  EXPECT_LT (missOnRim (samples, erkpa::makeSharpBetween (wall, lid)), 0.05 * round);
+}
+
+TEST_F (SharpSurfaces, BetweenTwoPlanesIsThePlaneThatHalvesThem)
+{
+  const auto a = surfaceOf (SurfaceModel::PLANE, {1.0f, 0.0f, 0.0f, -1.0f});
+  const auto b = surfaceOf (SurfaceModel::PLANE, {0.0f, 1.0f, 0.0f, -2.0f});
+  const auto between = erkpa::makeSharpBetween (a, b);
+  ASSERT_NE (between, nullptr);
+  EXPECT_NE (erkpa::planeBehind (*between), nullptr); // corners are found among planes
+  for (int i = 0; i < 10; ++i)
+  {
+    const Vector3d x = randomPoint (2.0);
+    EXPECT_NEAR (between->theta (x), M_SQRT1_2 * (b->theta (x) - a->theta (x)), 1e-12);
+    EXPECT_NEAR (between->thetaGradient (x).norm (), 1.0, 1e-12);
+  }
+  EXPECT_EQ (erkpa::makeSharpBetween (a, a), nullptr);
+  EXPECT_EQ (erkpa::makeSharpBetween (a, nullptr), nullptr);
 }
 
 TEST_F (SharpSurfaces, TwistedPlanesMakeTheEdgesOfATwistedBoxSharp)

@@ -114,6 +114,17 @@ public:
   bool
   addSharpEdge (const pcl::ModelCoefficients &coefficients, pcl::SacModel model);
 
+  /** \brief Make the edge sharp in which two faces meet: see makeSharpBetween (). The rim of a cylinder, for example.
+   * \param[in] face coefficients of a face; the normal of a plane points out of the solid. The signed distance to a
+   * sphere, cylinder or cone is positive outside it, so that it must be the outside of a boss, not of a hole
+   * \param[in] model its model, as above
+   * \param[in] other, other_model the other face
+   * \return false, with a PCL_ERROR, where they make no surface
+   */
+  bool
+  addSharpEdge (const pcl::ModelCoefficients &face, pcl::SacModel model, const pcl::ModelCoefficients &other,
+                pcl::SacModel other_model);
+
   /** \brief The same with any surface; null is ignored. */
   void
   addSharpSurface (const SharpSurface::ConstPtr &surface);
@@ -207,8 +218,9 @@ private:
   Outcome
   viewInput (PointView &view) const;
 
-  bool
-  addSharpEdge (const pcl::ModelCoefficients &coefficients, SurfaceModel model);
+  /** \brief The surface that coefficients describe; null, with a PCL_ERROR, where there is none. */
+  SharpSurface::ConstPtr
+  sharpSurfaceOf (const pcl::ModelCoefficients &coefficients, pcl::SacModel model) const;
 
   std::vector<float> radii_, confidences_;
   std::vector<Eigen::Matrix3f> shapes_;

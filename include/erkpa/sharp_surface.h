@@ -93,6 +93,17 @@ enum class SurfaceModel
 Outcome
 makeSharpSurface (SurfaceModel model, const std::vector<float> &coefficients, SharpSurface::ConstPtr &surface);
 
+/** \brief The sharp surface between two faces that meet in an edge: θ = f_other - f_face.
+ *
+ * Where both faces are known this is the best choice, for straight edges and for curved ones as the rim of a cylinder:
+ * max and min of the faces are then face + θH(θ) and other - θH(θ), whatever the angle between them.
+ * \param[in] face its θ is the signed distance f to the face, positive outside the solid
+ * \param[in] other the same for the other face
+ * \return null where one of them is; a SharpPlane for two planes (null where they are parallel)
+ */
+SharpSurface::ConstPtr
+makeSharpBetween (SharpSurface::ConstPtr face, SharpSurface::ConstPtr other);
+
 /** \brief The plane behind a sharp surface that is a plane or a warped one, and the warp; null where it is none. */
 const SharpPlane *
 planeBehind (const SharpSurface &surface, const SpaceWarp **warp = nullptr);

@@ -141,17 +141,35 @@ ERKPA<PointNT>::computeField ()
 }
 
 template <typename PointNT>
-bool
-ERKPA<PointNT>::addSharpEdge (const pcl::ModelCoefficients &coefficients, SurfaceModel model)
+SharpSurface::ConstPtr
+ERKPA<PointNT>::sharpSurfaceOf (const pcl::ModelCoefficients &coefficients, pcl::SacModel model) const
 {
   SharpSurface::ConstPtr surface;
-  Outcome outcome = makeSharpSurface (model, coefficients.values, surface);
+  SurfaceModel kind = SurfaceModel::PLANE;
+  Outcome outcome{Status::INVALID_SETTING, "the model " + std::to_string (static_cast<int> (model)) +
+                                               " is none of plane, sphere, cylinder, cone"};
+  if (surfaceModelOf (model, kind))
+    outcome = makeSharpSurface (kind, coefficients.values, surface);
   if (!outcome.ok ())
-  {
     PCL_ERROR ("[%s::addSharpEdge] %s.\n", getClassName ().c_str (), outcome.message.c_str ());
+  return surface;
+}
+
+template <typename PointNT>
+bool
+ERKPA<PointNT>::addSharpEdge (const pcl::ModelCoefficients &coefficients)
+{
+  return addSharpEdge (coefficients, pcl::SACMODEL_PLANE);
+}
+
+template <typename PointNT>
+bool
+ERKPA<PointNT>::addSharpEdge (const pcl::ModelCoefficients &coefficients, pcl::SacModel model)
+{
+  const SharpSurface::ConstPtr surface = sharpSurfaceOf (coefficients, model);
+  if (!surface)
     return false;
-  }
-  if (model == SurfaceModel::PLANE)
+  if (planeBehind (*surface) != nullptr)
     sharp_edges_.push_back (coefficients);
   addSharpSurface (surface);
   return true;
@@ -159,21 +177,17 @@ ERKPA<PointNT>::addSharpEdge (const pcl::ModelCoefficients &coefficients, Surfac
 
 template <typename PointNT>
 bool
-ERKPA<PointNT>::addSharpEdge (const pcl::ModelCoefficients &coefficients)
+ERKPA<PointNT>::addSharpEdge (const pcl::ModelCoefficients &face, pcl::SacModel model,
+                              const pcl::ModelCoefficients &other, pcl::SacModel other_model)
 {
-  return addSharpEdge (coefficients, SurfaceModel::PLANE);
-}
-
-template <typename PointNT>
-bool
-ERKPA<PointNT>::addSharpEdge (const pcl::ModelCoefficients &coefficients, pcl::SacModel model)
-{
-  SurfaceModel kind = SurfaceModel::PLANE;
-  if (surfaceModelOf (model, kind))
-    return addSharpEdge (coefficients, kind);
-  PCL_ERROR ("[%s::addSharpEdge] the model %d is none of plane, sphere, cylinder and cone.\n", getClassName ().c_str (),
-             static_cast<int> (model));
-  return false;
+  const SharpSurface::ConstPtr of_face = sharpSurfaceOf (face, model), of_other = sharpSurfaceOf (other, other_model);
+  if (!of_face || !of_other)
+    return false;
+  const SharpSurface::ConstPtr between = makeSharpBetween (of_face, of_other);
+  if (!between)
+    PCL_ERROR ("[%s::addSharpEdge] the two planes are parallel: they meet in no edge.\n", getClassName ().c_str ());
+  addSharpSurface (between);
+  return between != nullptr;
 }
 
 template <typename PointNT>
