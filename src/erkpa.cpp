@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <erkpa/erkpa.h>
 
+#include "field_type.h"
+
 #include <pcl/common/io.h>
 
 #include <algorithm>
@@ -49,42 +51,7 @@ readField (const CloudBytes &cloud, const std::string &name, std::vector<float> 
   const auto size = static_cast<std::size_t> (pcl::getFieldSize (field->datatype));
   if (size == 0 || field->offset + size > cloud.point_step)
     return bad;
-  switch (field->datatype)
-  {
-    case Field::INT8:
-      readAs<std::int8_t> (cloud, field->offset, values);
-      break;
-    case Field::BOOL:
-    case Field::UINT8:
-      readAs<std::uint8_t> (cloud, field->offset, values);
-      break;
-    case Field::INT16:
-      readAs<std::int16_t> (cloud, field->offset, values);
-      break;
-    case Field::UINT16:
-      readAs<std::uint16_t> (cloud, field->offset, values);
-      break;
-    case Field::INT32:
-      readAs<std::int32_t> (cloud, field->offset, values);
-      break;
-    case Field::UINT32:
-      readAs<std::uint32_t> (cloud, field->offset, values);
-      break;
-    case Field::INT64:
-      readAs<std::int64_t> (cloud, field->offset, values);
-      break;
-    case Field::UINT64:
-      readAs<std::uint64_t> (cloud, field->offset, values);
-      break;
-    case Field::FLOAT32:
-      readAs<float> (cloud, field->offset, values);
-      break;
-    case Field::FLOAT64:
-      readAs<double> (cloud, field->offset, values);
-      break;
-    default:
-      return bad;
-  }
+  withType (field->datatype, [&] (auto zero) { readAs<decltype (zero)> (cloud, field->offset, values); });
   return {};
 }
 

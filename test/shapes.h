@@ -123,6 +123,25 @@ boxBisectors (const Eigen::Vector3d &half)
   return planes;
 }
 
+/** \brief Points along the twelve edges of that box, corners included, \a steps to an edge. */
+inline std::vector<Eigen::Vector3d>
+boxEdgePoints (const Eigen::Vector3d &half, int steps)
+{
+  std::vector<Eigen::Vector3d> points;
+  for (int axis = 0; axis < 3; ++axis)
+    for (const double sb : {-1.0, 1.0})
+      for (const double sc : {-1.0, 1.0})
+        for (int i = 0; i <= steps; ++i)
+        {
+          Eigen::Vector3d p;
+          p[axis] = (2.0 * i / steps - 1.0) * half[axis];
+          p[(axis + 1) % 3] = sb * half[(axis + 1) % 3];
+          p[(axis + 2) % 3] = sc * half[(axis + 2) % 3];
+          points.push_back (p);
+        }
+  return points;
+}
+
 /** \brief An open sheet: points on a jittered square grid over -1..1, at z = height (x, y). */
 template <typename HeightT>
 Samples

@@ -231,17 +231,8 @@ TEST_F (Field, IsZeroOnTheEdgesAndCornersOfABoxWithSharpPlanes)
   }
   const auto field = shapes::field (shapes::box (20000, half).moved (attitude, 1.0, offset), options);
   std::vector<Vector3d> points;
-  for (int axis = 0; axis < 3; ++axis)
-    for (const double sb : {-1.0, 1.0})
-      for (const double sc : {-1.0, 1.0})
-        for (double t = -1.0; t <= 1.0; t += 0.05)
-        {
-          Vector3d p;
-          p[axis] = t * half[axis];
-          p[(axis + 1) % 3] = sb * half[(axis + 1) % 3];
-          p[(axis + 2) % 3] = sc * half[(axis + 2) % 3];
-          points.push_back (attitude * p + offset);
-        }
+  for (const Vector3d &p : shapes::boxEdgePoints (half, 40))
+    points.push_back (attitude * p + offset);
   std::vector<erkpa::FieldSample> samples;
   field->evaluate (points, samples);
   for (const erkpa::FieldSample &sample : samples)

@@ -73,25 +73,6 @@ withBisectors (const SpaceWarp::ConstPtr &back = nullptr)
   return options;
 }
 
-/** \brief Points along the edges of the box, corners included. */
-std::vector<Vector3d>
-edgePoints ()
-{
-  std::vector<Vector3d> points;
-  for (int axis = 0; axis < 3; ++axis)
-    for (const double sb : {-1.0, 1.0})
-      for (const double sc : {-1.0, 1.0})
-        for (double t = -1.0; t <= 1.001; t += 0.1)
-        {
-          Vector3d p;
-          p[axis] = t * HALF[axis];
-          p[(axis + 1) % 3] = sb * HALF[(axis + 1) % 3];
-          p[(axis + 2) % 3] = sc * HALF[(axis + 2) % 3];
-          points.push_back (p);
-        }
-  return points;
-}
-
 /** \brief Points on a box that is warped, with the normals of the warped surface. */
 shapes::Samples
 warped (const shapes::Samples &samples, const SpaceWarp &warp)
@@ -237,7 +218,7 @@ TEST_F (SharpSurfaces, TwistedPlanesMakeTheEdgesOfATwistedBoxSharp)
   const auto sharp = shapes::field (box, withBisectors (back));
   const auto round = shapes::field (box, optionsOf (Order::AUTOMATIC, 0, 0.16));
   double largest_sharp = 0.0, largest_round = 0.0;
-  for (const Vector3d &p : edgePoints ())
+  for (const Vector3d &p : shapes::boxEdgePoints (HALF, 20))
   {
     largest_sharp = std::max (largest_sharp, std::abs (sharp->value (there->map (p))));
     largest_round = std::max (largest_round, std::abs (round->value (there->map (p))));
@@ -269,7 +250,7 @@ TEST_F (WarpedField, IsTheFieldWhereTheWarpComesFrom)
         EXPECT_LT ((field->sample (y).gradient - fine).norm (), 1e-3);
       }
     }
-    for (const Vector3d &p : edgePoints ())
+    for (const Vector3d &p : shapes::boxEdgePoints (HALF, 20))
       EXPECT_NEAR (field->value (warp->map (p)), 0.0, 1e-4);
   }
 }

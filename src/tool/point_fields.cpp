@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "point_fields.h"
 
+#include "../field_type.h"
+
 #include <algorithm>
 #include <cstring>
 #include <limits>
@@ -21,37 +23,6 @@ load (const std::uint8_t *from)
   T value;
   std::memcpy (&value, from, sizeof (T));
   return value;
-}
-
-/** \brief Calls \a action with a zero of the type that a field's datatype names. */
-template <typename ActionT>
-auto
-withType (std::uint8_t datatype, ActionT action)
-{
-  switch (datatype)
-  {
-    // NOLINTNEXTLINE(bugprone-branch-clone): the branches differ in type
-    case Field::INT8:
-      return action (std::int8_t ());
-    case Field::UINT8:
-      return action (std::uint8_t ());
-    case Field::INT16:
-      return action (std::int16_t ());
-    case Field::UINT16:
-      return action (std::uint16_t ());
-    case Field::INT32:
-      return action (std::int32_t ());
-    case Field::UINT32:
-      return action (std::uint32_t ());
-    case Field::INT64:
-      return action (std::int64_t ());
-    case Field::UINT64:
-      return action (std::uint64_t ());
-    case Field::FLOAT32:
-      return action (float ());
-    default:
-      return action (double ());
-  }
 }
 
 /** \brief A number as the bytes of a type; what an integer type cannot hold becomes its nearest value. */
