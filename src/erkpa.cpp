@@ -127,18 +127,38 @@ struct Result
   Report *report;
 };
 
+/** \brief Whether every field lies within its point and every row within the data: PCL's conversions do not look. */
+Outcome
+checkLayout (const pcl::PCLPointCloud2 &cloud)
+{
+  for (const pcl::PCLPointField &field : cloud.fields)
+  {
+    const auto size = static_cast<std::size_t> (pcl::getFieldSize (field.datatype)) * std::max (field.count, 1U);
+    if (field.offset + size > cloud.point_step)
+      return {Status::BAD_CLOUD, "the field \"" + field.name + "\" of the cloud ends at byte " +
+                                     std::to_string (field.offset + size) + " of its points of " +
+                                     std::to_string (cloud.point_step) + ": set its offset or point_step"};
+  }
+  const std::size_t row = std::size_t (cloud.width) * cloud.point_step;
+  const std::size_t needed = cloud.height == 0 ? 0 : (cloud.height - 1) * std::size_t (cloud.row_step) + row;
+  if ((cloud.height > 1 && cloud.row_step < row) || cloud.data.size () < needed)
+    return {Status::BAD_CLOUD, "the cloud has " + std::to_string (cloud.data.size ()) + " bytes for " +
+                                   std::to_string (cloud.height) + " rows of " + std::to_string (row) +
+                                   ": set its width, height, row_step and data to agree"};
+  return {};
+}
+
 template <typename PointT>
 Outcome
 runAs (const pcl::PCLPointCloud2 &input, const Options &options, const ProgressCallback &progress, const Result &result)
 {
-  const typename pcl::PointCloud<PointT>::Ptr cloud (new pcl::PointCloud<PointT>);
-  if (!input.data.empty ()) // PCL's conversion is undefined without points
-    pcl::fromPCLPointCloud2 (input, *cloud);
   const bool is_empty = input.data.empty ();
   const CloudBytes bytes{input.fields,   input.data.data (),         input.point_step,
                          input.row_step, is_empty ? 0 : input.width, is_empty ? 0 : input.height};
   std::vector<float> radii, confidences;
-  Outcome outcome = readField (bytes, options.points.radius_field, radii);
+  Outcome outcome = checkLayout (input);
+  if (outcome.ok ())
+    outcome = readField (bytes, options.points.radius_field, radii);
   if (outcome.ok ())
     outcome = readField (bytes, options.points.confidence_field, confidences);
   if (!outcome.ok ())
@@ -146,6 +166,9 @@ runAs (const pcl::PCLPointCloud2 &input, const Options &options, const ProgressC
     PCL_ERROR ("[erkpa::reconstruct] %s.\n", outcome.message.c_str ());
     return outcome;
   }
+  const typename pcl::PointCloud<PointT>::Ptr cloud (new pcl::PointCloud<PointT>);
+  if (!is_empty) // PCL's conversion is undefined without points
+    pcl::fromPCLPointCloud2 (input, *cloud);
   Options typed = options;
   typed.points = PointOptions (); // PointT does not have these fields
   ERKPA<PointT> erkpa;

@@ -214,5 +214,9 @@ TEST (Erkpa, ReadsFieldsOfRunTimeCloudsWithPaddedRowsAndRefusesBadOnes)
   for (pcl::PCLPointField &field : packed.fields)
     if (field.name == "curvature")
       field.offset = 1000000;
-  EXPECT_EQ (erkpa::reconstruct (packed, options, of_packed, report).status, Status::INVALID_SETTING);
+  EXPECT_EQ (erkpa::reconstruct (packed, options, of_packed, report).status, Status::BAD_CLOUD);
+  expectEmpty (of_packed);
+  padded.data.resize (padded.data.size () / 2);
+  EXPECT_EQ (erkpa::reconstruct (padded, options, of_padded, report).status, Status::BAD_CLOUD);
+  expectEmpty (of_padded);
 }

@@ -11,6 +11,7 @@ enum class Status
 {
   OK,              ///< a surface was made
   NO_INPUT,        ///< no input cloud was set
+  BAD_CLOUD,       ///< the fields of the cloud do not fit its memory
   BAD_INDICES,     ///< an index points outside the cloud
   TOO_FEW_POINTS,  ///< fewer distinct, finite points than a fit needs
   INVALID_SETTING, ///< a setting has a value that makes no sense

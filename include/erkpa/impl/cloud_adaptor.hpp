@@ -88,7 +88,7 @@ struct CloudBytes
 };
 
 /** \brief The values of a field by name, of any numeric type; nothing is done for an empty name.
- * \return Status::INVALID_SETTING where the cloud has no such field
+ * \return Status::INVALID_SETTING where the cloud has no such field, or one that is not a number
  */
 Outcome
 readField (const CloudBytes &cloud, const std::string &name, std::vector<float> &values);
