@@ -1,11 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "enrichment.h"
 
-#include <Eigen/LU>
-#include <Eigen/SVD>
-
 #include <algorithm>
-#include <cmath>
 
 namespace erkpa
 {
@@ -13,65 +9,36 @@ namespace erkpa
 namespace
 {
 
-/** \brief The pencil of three planes, if they make one: α θ_a + β θ_b + γ θ_c = 0 with no factor near zero. */
-bool
-pencilOf (const std::array<const SharpPlane *, 3> &planes, double tolerance, Pencil &pencil)
+/** \brief Where fewer of the nodes than this lie on one side of a surface, its θ² fades out. */
+constexpr double LEAST_BALANCE = 0.2;
+
+/** \brief Rises from 0 to 1 as t does, C1. */
+double
+smoothStep (double t)
 {
-  Eigen::Matrix<double, 3, 3> normals;
-  const Eigen::Vector3d zero = Eigen::Vector3d::Zero ();
-  for (int i = 0; i < 3; ++i)
-    normals.col (i) = planes[static_cast<std::size_t> (i)]->thetaGradient (zero);
-  constexpr double PARALLEL = 0.05; // about 3 degrees: planes found by segmentation are not exact
-  if (std::abs (normals.determinant ()) > 1.5 * PARALLEL)
-    return false; // the smallest singular value is larger than PARALLEL: the other two make at most 1.5
-  const Eigen::JacobiSVD<Eigen::Matrix3d> svd (normals, Eigen::ComputeFullV);
-  if (svd.singularValues ()[2] > PARALLEL || svd.singularValues ()[1] < PARALLEL)
-    return false;
-  const Eigen::Vector3d factors = svd.matrixV ().col (2);
-  // A point on two of the planes: there the third must vanish too, else the three bound a prism.
-  const Eigen::Vector3d offsets (planes[0]->theta (zero), planes[1]->theta (zero), planes[2]->theta (zero));
-  if (std::abs (factors.dot (offsets)) > tolerance)
-    return false;
-  if (factors.cwiseAbs ().minCoeff () < 0.1)
-    return false;
-  pencil.scale_a = factors[0];
-  pencil.scale_b = -factors[1];
-  return true;
+  return t >= 1.0 ? 1.0 : t * t * (3.0 - 2.0 * t);
+}
+
+double
+smoothStepSlope (double t)
+{
+  return t >= 1.0 ? 0.0 : 6.0 * t * (1.0 - t);
 }
 
 } // namespace
 
-std::vector<Pencil>
-findPencils (const std::vector<SharpSurface::ConstPtr> &surfaces, double tolerance)
-{
-  std::vector<const SharpPlane *> planes (surfaces.size ());
-  std::vector<const SpaceWarp *> warps (surfaces.size ());
-  for (std::size_t i = 0; i < surfaces.size (); ++i)
-    planes[i] = planeBehind (*surfaces[i], &warps[i]);
-  std::vector<Pencil> pencils;
-  const int n = static_cast<int> (surfaces.size ());
-  const auto plane = [&] (int i) { return planes[static_cast<std::size_t> (i)]; };
-  const auto warp = [&] (int i) { return warps[static_cast<std::size_t> (i)]; };
-  for (int a = 0; a < n; ++a)
-    for (int b = a + 1; b < n; ++b)
-      for (int c = b + 1; c < n; ++c)
-      {
-        Pencil pencil{{a, b, c}, 0.0, 0.0};
-        if (plane (a) && plane (b) && plane (c) && warp (a) == warp (b) && warp (b) == warp (c) &&
-            pencilOf ({plane (a), plane (b), plane (c)}, tolerance, pencil))
-          pencils.push_back (pencil);
-      }
-  return pencils;
-}
-
 Enrichment::Enrichment (const ImplicitField &field)
     : field_ (field), jumps_ (field.options ().enrichment == EnrichmentType::JUMP)
 {
+  const Order order = field.options ().order;
+  const bool squares = !jumps_ && field.options ().constraint == Constraint::HERMITE;
   for (const SharpSurface::ConstPtr &surface : field.options ().sharp_surfaces)
   {
     const SpaceWarp *warp = nullptr;
     const bool is_linear = planeBehind (*surface, &warp) != nullptr && warp == nullptr;
-    reversible_.push_back (jumps_ || (is_linear && field.options ().order != Order::CONSTANT) ? 1 : 0);
+    const bool is_square_in_basis = is_linear && order == Order::QUADRATIC;
+    reversible_.push_back (jumps_ || (is_linear && order != Order::CONSTANT) ? 1 : 0);
+    squared_.push_back (squares && order != Order::CONSTANT && !is_square_in_basis ? 1 : 0);
   }
 }
 
@@ -94,11 +61,13 @@ Enrichment::gather (const Support &support)
       near_pencils_.push_back (pencil);
 }
 
-/** \brief Keep a surface that has gathered nodes on either side. */
+/** \brief Keep a surface that is present and has gathered nodes on either side. */
 void
 Enrichment::evaluateThetas (const Support &support, int surface)
 {
   const SharpSurface &sharp = *field_.options ().sharp_surfaces[static_cast<std::size_t> (surface)];
+  if (sharp.isAbsentIn (support.center () + field_.points ().origin, support.reach ()))
+    return;
   const std::size_t slots = support.points ().size ();
   const auto position = [&] (std::size_t slot)
   { return Eigen::Vector3d (support.position (slot) + field_.points ().origin); };
@@ -137,28 +106,103 @@ Enrichment::select (const Support &support, const Eigen::Vector3d &x)
   terms_.clear ();
   if (near_count_ == 0)
     return;
-  const Eigen::Vector3d position = x + field_.points ().origin;
+  position_ = x + field_.points ().origin;
+  total_weight_ = 0.0;
+  for (const SupportNode &node : support.nodes ())
+    total_weight_ += node.weight;
   for (std::size_t i = 0; i < near_count_; ++i)
   {
     NearSurface &near = near_[i];
-    bool below = false, above = false;
-    for (const SupportNode &node : support.nodes ())
-    {
-      const double theta = near.at_nodes[static_cast<std::size_t> (node.slot)].value;
-      below = below || theta < 0.0;
-      above = above || theta > 0.0;
-    }
-    near.active = below && above && size () < MAX_TERMS;
-    if (!near.active)
-      continue;
-    const SharpSurface &surface = *field_.options ().sharp_surfaces[static_cast<std::size_t> (near.surface)];
-    near.at_point = {surface.theta (position), surface.thetaGradient (position)};
-    addTerm (static_cast<int> (i), -1, 1.0, 1.0);
+    activate (near, support);
+    if (near.active)
+      addTerm ({static_cast<int> (i), -1, -1, 1.0, 1.0, false, false, near.presence});
   }
-  if (terms_.size () < 3)
+  const std::size_t kinks = terms_.size ();
+  if (kinks >= 3)
+    for (const Pencil &pencil : near_pencils_)
+      addCornerTerms (pencil);
+  for (std::size_t i = 0; i < kinks; ++i)
+    addSquare (terms_[i].first);
+}
+
+void
+Enrichment::activate (NearSurface &near, const Support &support)
+{
+  near.weight_below = near.weight_above = 0.0;
+  for (const SupportNode &node : support.nodes ())
+  {
+    const double theta = near.at_nodes[static_cast<std::size_t> (node.slot)].value;
+    if (theta < 0.0)
+      near.weight_below += node.weight;
+    else if (theta > 0.0)
+      near.weight_above += node.weight;
+  }
+  near.active = near.weight_below > 0.0 && near.weight_above > 0.0 && size () < MAX_TERMS;
+  if (!near.active)
     return;
-  for (const Pencil &pencil : near_pencils_)
-    addCornerTerms (pencil);
+  const SharpSurface &surface = surfaceOf (near);
+  near.presence = surface.presence (position_, support.radius ());
+  near.active = near.presence > MIN_PRESENCE;
+  if (near.active)
+    near.at_point = {surface.theta (position_), surface.thetaGradient (position_)};
+}
+
+double
+Enrichment::balance (const NearSurface &near) const
+{
+  return std::min (near.weight_below, near.weight_above) / total_weight_;
+}
+
+Eigen::Vector3d
+Enrichment::balanceGradient (const NearSurface &near, const Support &support) const
+{
+  const double sign = near.weight_below < near.weight_above ? -1.0 : 1.0;
+  Eigen::Vector3d of_side = Eigen::Vector3d::Zero (), of_all = Eigen::Vector3d::Zero ();
+  for (const SupportNode &node : support.nodes ())
+  {
+    const Eigen::Vector3d change = support.weightGradient (node);
+    of_all += change;
+    if (sign * near.at_nodes[static_cast<std::size_t> (node.slot)].value > 0.0)
+      of_side += change;
+  }
+  return (of_side - balance (near) * of_all) / total_weight_;
+}
+
+Eigen::Vector3d
+Enrichment::surfacePresenceGradient (const NearSurface &near, const Support &support) const
+{
+  PresenceSlope slope;
+  surfaceOf (near).presence (position_, support.radius (), &slope);
+  return support.radius () * (slope.by_position + slope.by_radius * support.radiusGradient ());
+}
+
+Eigen::Vector3d
+Enrichment::presenceGradient (int term, const Support &support) const
+{
+  const Term &t = terms_[static_cast<std::size_t> (term)];
+  Eigen::Vector3d relative = Eigen::Vector3d::Zero (); // of a product
+  for (const int index : {t.first, t.second, t.third})
+  {
+    if (index < 0)
+      continue;
+    const NearSurface &near = near_[static_cast<std::size_t> (index)];
+    if (near.presence < 1.0)
+      relative += surfacePresenceGradient (near, support) / near.presence;
+  }
+  const NearSurface &near = near_[static_cast<std::size_t> (t.first)];
+  const double share = t.is_square ? balance (near) / LEAST_BALANCE : 1.0;
+  if (share < 1.0)
+    relative += smoothStepSlope (share) / (LEAST_BALANCE * smoothStep (share)) * balanceGradient (near, support);
+  return t.presence * relative;
+}
+
+void
+Enrichment::addSquare (int near)
+{
+  const NearSurface &surface = near_[static_cast<std::size_t> (near)];
+  const double presence = surface.presence * smoothStep (balance (surface) / LEAST_BALANCE);
+  if (squared_[static_cast<std::size_t> (surface.surface)] != 0 && presence > MIN_PRESENCE && size () < MAX_TERMS)
+    terms_.push_back ({near, -1, -1, 1.0, 1.0, false, true, presence});
 }
 
 bool
@@ -167,15 +211,23 @@ Enrichment::isReversible (int near) const
   return near < 0 || reversible_[static_cast<std::size_t> (near_[static_cast<std::size_t> (near)].surface)] != 0;
 }
 
-/** \brief Adds the term that is not zero where all its scaled θ are positive, or negative if x is among those. */
+/** \brief Adds the term that is not zero where all its scaled θ are positive, or negative if x is among those.
+ *
+ * Seen from the other side a corner's term is another combination of the terms, so that it matters from which side
+ * it fades: one that does is always seen from the same.
+ */
 void
-Enrichment::addTerm (int first, int second, double scale_a, double scale_b)
+Enrichment::addTerm (const Term &term)
 {
   const auto theta = [this] (int near) { return near_[static_cast<std::size_t> (near)].at_point.value; };
-  const bool holds_x = scale_a * theta (first) >= 0.0 && (second < 0 || scale_b * theta (second) >= 0.0);
-  const bool reverse = holds_x && isReversible (first) && isReversible (second);
-  const double sign = reverse ? -1.0 : 1.0;
-  terms_.push_back ({first, second, sign * scale_a, sign * scale_b, reverse});
+  const bool is_corner = term.second >= 0;
+  const bool holds_x =
+      term.scale_a * theta (term.first) >= 0.0 && (!is_corner || term.scale_b * theta (term.second) >= 0.0);
+  const bool fades = is_corner && term.presence < 1.0;
+  Term &added = terms_.emplace_back (term);
+  added.open = holds_x && !fades && isReversible (term.first) && isReversible (term.second);
+  added.scale_a *= added.open ? -1.0 : 1.0;
+  added.scale_b *= added.open ? -1.0 : 1.0;
 }
 
 void
@@ -185,10 +237,15 @@ Enrichment::addCornerTerms (const Pencil &pencil)
   const int c = activeIndex (pencil.surfaces[2]);
   if (a < 0 || b < 0 || c < 0 || size () + 1 + (jumps_ ? 1 : 0) > MAX_TERMS)
     return;
-  addTerm (a, b, pencil.scale_a, pencil.scale_b);
+  double presence = 1.0;
+  for (const int near : {a, b, c})
+    presence *= near_[static_cast<std::size_t> (near)].presence;
+  if (!(presence > MIN_PRESENCE))
+    return;
+  addTerm ({a, b, c, pencil.scale_a, pencil.scale_b, false, false, presence});
   // The six sectors around the line have six indicators: 1, H(a), H(b), H(c), and two products.
   if (jumps_)
-    addTerm (b, c, 1.0, 1.0);
+    addTerm ({b, c, a, 1.0, 1.0, false, false, presence});
 }
 
 void
@@ -201,6 +258,12 @@ Enrichment::evaluate (const Term &term, const Theta &a, const Theta *b, double r
   {
     height = term.scale_b * b->value;
     slope = term.scale_b * b->gradient;
+  }
+  if (term.is_square)
+  {
+    value = height * height / (radius * radius);
+    gradient = 2.0 * height / radius * slope;
+    return;
   }
   value = 0.0;
   gradient.setZero ();

@@ -1,29 +1,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include "pencil.h"
 #include "support.h"
 
-#include <array>
+#include <cstddef>
 #include <vector>
 
 namespace erkpa
 {
-
-/** \brief Three sharp surfaces through one line, as three faces that meet in a corner give.
- *
- * With a = scale_a θ_a and b = scale_b θ_b the third is a - b up to its own scale. Max, min and saddle of the three
- * faces differ from combinations of the θ⁺ by one function only: min (a⁺, b⁺).
- */
-struct Pencil
-{
-  std::array<int, 3> surfaces;
-  double scale_a, scale_b;
-};
-
-/** \brief The pencils among planes: triples that share a line to within \a tolerance (a length). Planes seen through
- * the same warp share the warped line. */
-std::vector<Pencil>
-findPencils (const std::vector<SharpSurface::ConstPtr> &surfaces, double tolerance);
 
 /** \brief The terms that sharp surfaces add to the reproduction vector, and those of the corners: θH(θ) (eq. 22), at a
  * pencil min (a⁺, b⁺); or, where the field may jump, H(θ), at a pencil H(a)H(b) and H(b)H(c).
@@ -31,12 +16,22 @@ findPencils (const std::vector<SharpSurface::ConstPtr> &surfaces, double toleran
  * A surface is active at x where the support holds nodes on either side of it (paper, section 3.3). Where θH(θ) and
  * -θH(-θ) differ by a polynomial of the basis, the one is taken that is zero at x: the term then takes up what lies
  * beyond the sharp surface and leaves the value at x to the polynomials, which is kinder to terms that drop out.
+ *
+ * A kink comes with θ², where that is not in the basis. A smooth surface may be curved otherwise across the sharp
+ * surface than along it, which the spherical basis cannot follow: the kink would, and leave a crease that the nodes
+ * do not show.
+ *
+ * A term fades out with its presence: with the sharp surface it belongs to where that is limited, and θ² as well where
+ * the nodes come to lie on one side.
  */
 class Enrichment
 {
 public:
   /** \brief More terms than this are not used at one point; the first surfaces given go first. */
   static constexpr int MAX_TERMS = 30;
+
+  /** \brief Terms of a smaller presence are not used. */
+  static constexpr double MIN_PRESENCE = 1e-6;
 
   explicit Enrichment (const ImplicitField &field);
 
@@ -55,12 +50,30 @@ public:
     return static_cast<int> (terms_.size ());
   }
 
-  /** \brief The power of the length scale that the terms go with. */
+  /** \brief The power of the length scale that a term goes with. */
   int
-  degree () const
+  degree (int term) const
   {
-    return jumps_ ? 0 : 1;
+    return isSquare (term) ? 2 : jumps_ ? 0 : 1;
   }
+
+  /** \brief Whether a term is a θ². */
+  bool
+  isSquare (int term) const
+  {
+    return terms_[static_cast<std::size_t> (term)].is_square;
+  }
+
+  /** \brief How much of a term is in force: 1, or less down to MIN_PRESENCE where it fades out. */
+  double
+  presence (int term) const
+  {
+    return terms_[static_cast<std::size_t> (term)].presence;
+  }
+
+  /** \brief ε∇ of it, for the support given to select (). */
+  Eigen::Vector3d
+  presenceGradient (int term, const Support &support) const;
 
   /** \brief Value and gradient of an active term at a gathered value point, in the scaled coordinates (θ/ε). */
   void
@@ -77,12 +90,14 @@ private:
     Eigen::Vector3d gradient;
   };
 
-  /** \brief A term of one near surface (second < 0), or of two that meet in a corner. */
+  /** \brief A term of one near surface (second < 0), or of two that meet in a corner, with a third that goes by. */
   struct Term
   {
-    int first, second;
+    int first, second, third;
     double scale_a, scale_b;
     bool open; ///< whether the side on which it is not zero lacks its boundary: H(0) = 1 (eq. 23) seen from behind
+    bool is_square;
+    double presence;
   };
 
   struct NearSurface
@@ -91,10 +106,17 @@ private:
     std::vector<Theta> at_nodes;
     Theta at_point;
     bool active;
+    double presence;           ///< of the surface at x
+    double weight_below = 0.0; ///< of the support's nodes with θ < 0
+    double weight_above = 0.0; ///< of those with θ > 0
   };
 
   void
   evaluateThetas (const Support &support, int surface);
+
+  /** \brief Weigh the support's nodes on either side of a near surface, and decide whether it is active. */
+  void
+  activate (NearSurface &near, const Support &support);
 
   int
   activeIndex (int surface) const;
@@ -104,7 +126,26 @@ private:
   isReversible (int near) const;
 
   void
-  addTerm (int first, int second, double scale_a, double scale_b);
+  addTerm (const Term &term);
+
+  void
+  addSquare (int near);
+
+  /** \brief The share of the nodes that lie on the side of a near surface where there are fewer. */
+  double
+  balance (const NearSurface &near) const;
+
+  Eigen::Vector3d
+  balanceGradient (const NearSurface &near, const Support &support) const;
+
+  Eigen::Vector3d
+  surfacePresenceGradient (const NearSurface &near, const Support &support) const;
+
+  const SharpSurface &
+  surfaceOf (const NearSurface &near) const
+  {
+    return *field_.options ().sharp_surfaces[static_cast<std::size_t> (near.surface)];
+  }
 
   void
   evaluate (const Term &term, const Theta &a, const Theta *b, double radius, double &value,
@@ -115,11 +156,14 @@ private:
 
   const ImplicitField &field_;
   bool jumps_;
-  std::vector<char> reversible_; // per sharp surface
+  std::vector<char> reversible_; // per sharp surface: see isReversible ()
+  std::vector<char> squared_;    // per sharp surface: whether its kink comes with θ²
   std::vector<Pencil> near_pencils_;
   std::vector<NearSurface> near_;
   std::size_t near_count_ = 0; // near_ keeps its memory from ball to ball
   std::vector<Term> terms_;
+  Eigen::Vector3d position_ = Eigen::Vector3d::Zero (); // selected for, in the input's frame
+  double total_weight_ = 0.0;                           // of the support's nodes
 };
 
 } // namespace erkpa

@@ -33,7 +33,7 @@ public:
       : points_ (points), fits_gradients_ (constraint == Constraint::HERMITE && BasisT::SIZE > 1),
         functional_ (constraint == Constraint::FUNCTIONAL || (constraint == Constraint::HERMITE && BasisT::SIZE == 1)),
         support_ (support), enrichment_ (enrichment), system_ (BasisT::SIZE + enrichment.size ()), R_ (system_.size ()),
-        G_ (system_.size (), 3), floors_ (system_.size ())
+        G_ (system_.size (), 3), floors_ (system_.size ()), fades_ (Vector::Zero (system_.size ()))
   {
     for (const SupportNode &node : support_.nodes ())
     {
@@ -43,7 +43,8 @@ public:
         system_.addGradient (node.weight / node.ratio, G_, normalOf (node));
     }
     setFloors ();
-    system_.factorize (floors_);
+    setFades ();
+    system_.factorize (floors_, fades_);
     evaluateTermsAtCenter ();
     shape_ = system_.solve (R_);
   }
@@ -81,6 +82,17 @@ public:
     return result - gradientOfRaises (c) - turnOfRaises (shape_, c) - turnOfRaises (c, shape_);
   }
 
+  /** \brief What the fit says at a gathered value point, u = (x_i - x) / ε. */
+  double
+  heightAt (int slot, const Eigen::Vector3d &u)
+  {
+    if (!has_coefficients_)
+      coefficients_ = system_.solve (system_.rhs ());
+    has_coefficients_ = true;
+    evaluateTerms (slot, u);
+    return support_.radius () * coefficients_.dot (R_);
+  }
+
   /** \brief φ_i and ψ_i of all nodes in the support (eq. 19). */
   void
   shapeFunctions (std::vector<ShapeFunction> &functions)
@@ -101,6 +113,9 @@ public:
   }
 
 private:
+  static constexpr double FADE =
+      0.1; // about a kink's pivot in the middle of an edge: it halves at a presence of one half
+
   Eigen::Vector3d
   normalOf (const SupportNode &node) const
   {
@@ -118,11 +133,17 @@ private:
   void
   evaluateTerms (const SupportNode &node)
   {
-    BasisT::evaluate (node.u, R_, G_);
+    evaluateTerms (node.slot, node.u);
+  }
+
+  void
+  evaluateTerms (int slot, const Eigen::Vector3d &u)
+  {
+    BasisT::evaluate (u, R_, G_);
     Eigen::Vector3d slope;
     for (int e = 0; e < enrichment_.size (); ++e)
     {
-      enrichment_.atNode (e, node.slot, support_.radius (), R_[BasisT::SIZE + e], slope);
+      enrichment_.atNode (e, slot, support_.radius (), R_[BasisT::SIZE + e], slope);
       G_.row (BasisT::SIZE + e) = slope.transpose ();
     }
   }
@@ -142,13 +163,14 @@ private:
   int
   degree (int term) const
   {
-    return term < BasisT::SIZE ? BasisT::degree (term) : enrichment_.degree ();
+    return term < BasisT::SIZE ? BasisT::degree (term) : enrichment_.degree (term - BasisT::SIZE);
   }
 
   PivotFloor
   floorOf (int term) const
   {
-    return term < BasisT::SIZE ? floorOfPolynomial (degree (term), functional_) : floorOfEnrichment (fits_gradients_);
+    const bool is_polynomial = term < BasisT::SIZE || enrichment_.isSquare (term - BasisT::SIZE);
+    return is_polynomial ? floorOfPolynomial (degree (term), functional_) : floorOfEnrichment (fits_gradients_);
   }
 
   void
@@ -169,6 +191,29 @@ private:
     }
   }
 
+  /** \brief A term that is present by p has its pivot raised by W FADE ((1 - p) / p)²: not at all in full force, and
+   * without limit, so that its coefficient goes to zero, as p does. */
+  void
+  setFades ()
+  {
+    for (int e = 0; e < enrichment_.size (); ++e)
+      if (const double p = enrichment_.presence (e); p < 1.0)
+        fades_[BasisT::SIZE + e] = FADE * system_.totalWeight () * (1.0 - p) * (1.0 - p) / (p * p);
+  }
+
+  /** \brief ∇ of how much the pivot of a term is raised because it fades. */
+  Eigen::Vector3d
+  gradientOfFade (int term) const
+  {
+    const double p = enrichment_.presence (term - BasisT::SIZE), weight = system_.totalWeight ();
+    Eigen::Vector3d of_weight = Eigen::Vector3d::Zero ();
+    for (const SupportNode &node : support_.nodes ())
+      of_weight += support_.weightGradient (node);
+    const double by_presence = -2.0 * FADE * weight * (1.0 - p) / (p * p * p);
+    return fades_[term] / weight * of_weight +
+           by_presence * enrichment_.presenceGradient (term - BasisT::SIZE, support_);
+  }
+
   /** \brief Σ_j a_j c_j ∇ρ_j over the raised pivots.
    *
    * ρ_j depends on x through its pivot and its floor. pivot_j = v^T M v with v the residual of term j, so
@@ -182,24 +227,33 @@ private:
     const Eigen::Vector3d &scale = support_.radiusGradient (); // ∇ε / ε in units of 1/ε
     for (int j = 0; j < system_.size (); ++j)
     {
-      if (!(system_.raise (j) > 0.0))
-        continue;
-      const Vector v = system_.residualOfTerm (j);
-      const double power = 2.0 * degree (j);
-      Eigen::Vector3d of_pivot, of_floor;
-      gradientsOfPivot (j, v, of_pivot, of_floor);
-      of_pivot += 2.0 * turnOfRaises (v, v) - power * system_.pivot (j) * scale;
-      if (floorOf (j).of != PivotFloor::Of::WEIGHT)
-        of_floor -= power * floors_[j] * scale;
-      for (int k = 0; k < j; ++k)
-        of_pivot += v[k] * v[k] * of_raise[static_cast<std::size_t> (k)];
-      // ρ is homogeneous of degree one in pivot and floor: ∂ρ/∂floor = (ρ - ρ' pivot) / floor.
-      const double by_floor = (system_.raise (j) - system_.raiseSlope (j) * system_.pivot (j)) / floors_[j];
-      of_raise[static_cast<std::size_t> (j)] =
-          system_.raiseSlope (j) * of_pivot + by_floor * of_floor + power * system_.raise (j) * scale;
-      sum += shape_[j] * c[j] * of_raise[static_cast<std::size_t> (j)];
+      Eigen::Vector3d &of_this = of_raise[static_cast<std::size_t> (j)];
+      if (fades_[j] > 0.0)
+        of_this += gradientOfFade (j) + 2.0 * degree (j) * fades_[j] * scale;
+      if (system_.raise (j) > 0.0)
+        of_this += gradientOfRaise (j, of_raise);
+      sum += shape_[j] * c[j] * of_this;
     }
     return sum;
+  }
+
+  /** \brief ∇ρ_j, from those of the terms before it. */
+  Eigen::Vector3d
+  gradientOfRaise (int j, const std::vector<Eigen::Vector3d> &of_raise)
+  {
+    const Eigen::Vector3d &scale = support_.radiusGradient ();
+    const Vector v = system_.residualOfTerm (j);
+    const double power = 2.0 * degree (j);
+    Eigen::Vector3d of_pivot, of_floor;
+    gradientsOfPivot (j, v, of_pivot, of_floor);
+    of_pivot += 2.0 * turnOfRaises (v, v) - power * system_.pivot (j) * scale;
+    if (floorOf (j).of != PivotFloor::Of::WEIGHT)
+      of_floor -= power * floors_[j] * scale;
+    for (int k = 0; k < j; ++k)
+      of_pivot += v[k] * v[k] * of_raise[static_cast<std::size_t> (k)];
+    // ρ is homogeneous of degree one in pivot and floor: ∂ρ/∂floor = (ρ - ρ' pivot) / floor.
+    const double by_floor = (system_.raise (j) - system_.raiseSlope (j) * system_.pivot (j)) / floors_[j];
+    return system_.raiseSlope (j) * of_pivot + by_floor * of_floor + power * system_.raise (j) * scale;
   }
 
   /** \brief Σ_i a_i H_i (ρ∘b) over the squares R_i with Hessian H_i and the linear terms' ρ and b.
@@ -270,9 +324,12 @@ private:
   Vector R_;                                            // terms at the node or point last visited
   Gradients G_;                                         // their gradients
   Vector floors_;                                       // of the pivots
+  Vector fades_;                                        // how much they are raised whatever they are
   Eigen::Vector3d centroid_ = Eigen::Vector3d::Zero (); // of the weighted nodes
   double spread_ = 0.0;                                 // Σ w |u - centroid|²
   Vector shape_;                                        // M^-1 R(x)
+  Vector coefficients_;                                 // M^-1 b
+  bool has_coefficients_ = false;
 };
 
 } // namespace erkpa

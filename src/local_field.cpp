@@ -32,6 +32,9 @@ LocalField::gatherUnwarped (const Eigen::Vector3d &center, double extent)
   ball_center_ = center;
   ball_extent_ = extent;
   support_.gather (center, extent);
+  if (groups_.gather (center, extent))
+    support_.gatherForParts (extent);
+  groups_.assign (support_);
   enrichment_.gather (support_);
 }
 
@@ -112,6 +115,15 @@ LocalField::evaluateUnwarped (const Eigen::Vector3d &x, Task task)
     gatherUnwarped (x, 0.0);
   if (!support_.select (x))
     return false;
+  if (groups_.select (support_, x))
+    return evaluateFaces (x, task);
+  face_ = nearestFace ();
+  return fitSelected (x, task);
+}
+
+bool
+LocalField::fitSelected (const Eigen::Vector3d &x, Task task)
+{
   ++evaluations_;
   support_nodes_ += support_.nodes ().size ();
   enrichment_.select (support_, x);
@@ -134,6 +146,111 @@ LocalField::evaluateUnwarped (const Eigen::Vector3d &x, Task task)
   return result_.isDefined ();
 }
 
+bool
+LocalField::evaluateFaces (const Eigen::Vector3d &x, Task task)
+{
+  ballot_.clear ();
+  ballot_radius_ = support_.radius ();
+  const int count = std::min (groups_.count (), FaceTree::MAX_FACES);
+  for (const SupportNode &node : support_.nodes ())
+  {
+    const int group = groups_.groupOfSlot (node.slot);
+    if (group >= 0 && group < count)
+      ballot_.push_back (node);
+  }
+  pieces_.clear ();
+  values_.clear ();
+  heights_.clear ();
+  for (int group = 0; group < count; ++group)
+    if (support_.selectPart (x, groups_.members (group)) && fitSelected (x, Task::HEIGHTS))
+    {
+      pieces_.push_back (group);
+      values_.push_back (result_.value);
+    }
+  result_ = FieldSample ();
+  if (!pieces_.empty ())
+  {
+    const std::size_t winner = electFace ();
+    support_.selectPart (x, groups_.members (pieces_[winner]));
+    face_ = nearestFace ();
+    if (task != Task::VALUE)
+      fitSelected (x, task);
+    result_.value = values_[winner];
+  }
+  support_.select (x);
+  return result_.isDefined ();
+}
+
+/** \brief Of all ways to combine the faces take the one that is nearest to zero at the nodes; its piece at x. */
+std::size_t
+LocalField::electFace () const
+{
+  const auto faces = static_cast<int> (pieces_.size ());
+  if (faces == 1)
+    return 0;
+  const FaceTree *best = nullptr;
+  double least = HUGE_VAL;
+  std::array<double, FaceTree::MAX_FACES> heights{};
+  for (const FaceTree &tree : treesOf (faces))
+  {
+    double sum = 0.0;
+    for (std::size_t i = 0; i < ballot_.size () && sum < least; ++i)
+    {
+      for (std::size_t f = 0; f < pieces_.size (); ++f)
+        heights[f] = heights_[f * ballot_.size () + i];
+      sum += ballot_[i].weight * std::abs (heights[static_cast<std::size_t> (tree.winner (heights.data ()))]);
+    }
+    if (sum < least)
+    {
+      least = sum;
+      best = &tree;
+    }
+  }
+  return static_cast<std::size_t> (best == nullptr ? 0 : best->winner (values_.data ()));
+}
+
+LocalSample
+LocalField::sampleOnFace (const Eigen::Vector3d &x, int face)
+{
+  LocalSample sample;
+  Eigen::Vector3d unwarped = x;
+  if (warp_ != nullptr && !unwarp (x, unwarped))
+    return sample;
+  if ((unwarped - ball_center_).norm () > ball_extent_ || !support_.covers (unwarped))
+    gatherUnwarped (unwarped, 0.0);
+  result_ = FieldSample ();
+  bool in_reach = support_.select (unwarped);
+  if (in_reach && groups_.select (support_, unwarped))
+  {
+    const int group = groups_.groupOf (face);
+    in_reach = group >= 0 && support_.selectPart (unwarped, groups_.members (group));
+  }
+  if (!in_reach || !fitSelected (unwarped, Task::GRADIENT))
+    return sample;
+  static_cast<FieldSample &> (sample) = result_;
+  sample.radius = support_.radius ();
+  if (warp_ != nullptr)
+    sample.gradient = unwarping_.transpose () * sample.gradient;
+  return sample;
+}
+
+/** \brief Face of the nearest node in the support selected. */
+int
+LocalField::nearestFace () const
+{
+  if (field_.faces () == nullptr)
+    return -1;
+  double nearest = HUGE_VAL;
+  int face = -1;
+  for (const SupportNode &node : support_.nodes ())
+    if (groups_.faceOfSlot (node.slot) >= 0 && node.u.squaredNorm () < nearest)
+    {
+      nearest = node.u.squaredNorm ();
+      face = groups_.faceOfSlot (node.slot);
+    }
+  return face;
+}
+
 template <typename BasisT>
 void
 LocalField::fit (Task task)
@@ -150,6 +267,9 @@ LocalField::fitWith (Task task)
 {
   FieldFit<BasisT, Size, MaxSize> fit (field_.points (), field_.options ().constraint, support_, enrichment_);
   result_.value = fit.value ();
+  if (task == Task::HEIGHTS)
+    for (const SupportNode &node : ballot_)
+      heights_.push_back (fit.heightAt (node.slot, node.u * (ballot_radius_ / support_.radius ())));
   if (task == Task::GRADIENT)
     result_.gradient = fit.gradient ();
   else if (task == Task::SHAPE_FUNCTIONS)

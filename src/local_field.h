@@ -2,6 +2,8 @@
 #pragma once
 
 #include "enrichment.h"
+#include "face_groups.h"
+#include "face_tree.h"
 #include "support.h"
 
 #include <erkpa/implicit_field.h>
@@ -31,7 +33,8 @@ class LocalField
 public:
   /** \param[in] unwarped look at the field as it is before its warp */
   explicit LocalField (const ImplicitField &field, bool unwarped = false)
-      : field_ (field), warp_ (unwarped ? nullptr : field.options ().warp.get ()), support_ (field), enrichment_ (field)
+      : field_ (field), warp_ (unwarped ? nullptr : field.options ().warp.get ()), support_ (field),
+        enrichment_ (field), groups_ (field.faces ())
   {
   }
 
@@ -47,9 +50,20 @@ public:
   LocalSample
   sample (const Eigen::Vector3d &x);
 
+  /** \brief The smooth piece of f that holds on a face, continued to x; undefined where the face is out of reach. */
+  LocalSample
+  sampleOnFace (const Eigen::Vector3d &x, int face);
+
   /** \brief The shape functions of the nodes in reach of x (eq. 19). */
   std::vector<ShapeFunction>
   shapeFunctions (const Eigen::Vector3d &x);
+
+  /** \brief The face whose piece of f held at the point last evaluated; -1 where the field has no faces. */
+  int
+  face () const
+  {
+    return face_;
+  }
 
   /** \brief Support radius and distance to the data of the last evaluation. */
   const Support &
@@ -86,6 +100,7 @@ private:
   enum class Task
   {
     VALUE,
+    HEIGHTS, ///< the value, and what the fit says at the nodes of the ballot
     GRADIENT,
     SHAPE_FUNCTIONS
   };
@@ -97,6 +112,19 @@ private:
   /** \brief The same in the space the nodes are given in. */
   bool
   evaluateUnwarped (const Eigen::Vector3d &x, Task task);
+
+  /** \brief Fit each face alone, then combine them as the nodes around x say. */
+  bool
+  evaluateFaces (const Eigen::Vector3d &x, Task task);
+
+  std::size_t
+  electFace () const;
+
+  bool
+  fitSelected (const Eigen::Vector3d &x, Task task);
+
+  int
+  nearestFace () const;
 
   void
   gatherUnwarped (const Eigen::Vector3d &center, double extent);
@@ -128,6 +156,13 @@ private:
   Eigen::Vector3d warped_center_ = Eigen::Vector3d::Zero (); // where the warp takes guess_
   Eigen::Vector3d guess_ = Eigen::Vector3d::Zero ();         // unwarped
   Eigen::Matrix3d unwarping_ = Eigen::Matrix3d::Identity (); // Jacobian of warp^-1 at the point last evaluated
+  FaceGroups groups_;
+  std::vector<SupportNode> ballot_;  // the nodes that say how faces combine
+  double ballot_radius_ = 0.0;
+  std::vector<int> pieces_;          // the groups that have a fit at the point last evaluated
+  std::vector<double> values_;       // of the pieces
+  std::vector<double> heights_;      // piece after piece, of the ballot
+  int face_ = -1;
   FieldSample result_;
   std::vector<ShapeFunction> shape_functions_;
   std::size_t evaluations_ = 0, support_nodes_ = 0;

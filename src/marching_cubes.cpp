@@ -3,7 +3,9 @@
 
 #include "border.h"
 #include "cell_loops.h"
-#include "loop_triangulation.h"
+#include "cell_mesher.h"
+#include "crease_edges.h"
+#include "feature_loops.h"
 #include "mesh_graph.h"
 #include "sparse_grid.h"
 #include "surface_tracking.h"
@@ -16,6 +18,7 @@
 #include <algorithm>
 #include <cmath>
 #include <string>
+#include <utility>
 
 namespace erkpa
 {
@@ -72,95 +75,18 @@ markCutEdges (const std::vector<GridPoint> &cells, SparseGrid &grid)
   }
 }
 
-/** \brief What one stretch of cells gives: triangles, and loops that need a vertex of their own inside the cell. */
-struct CellOutput
-{
-  std::vector<Triangle> triangles;
-  std::vector<std::vector<int>> centered_loops;
-};
-
-/** \brief Turns the loops of cells into triangles over the placed vertices. */
-class CellMesher
-{
-public:
-  CellMesher (const SparseGrid &grid, const SurfaceVertices &vertices) : grid_ (grid), vertices_ (vertices) {}
-
-  void
-  mesh (const GridPoint &cell, CellOutput &output)
-  {
-    const CellLoops loops = traceLoops (grid_.cornerValues (cell));
-    for (int loop = 0; loop < loops.count; ++loop)
-    {
-      const auto &edges = loops.edges[static_cast<std::size_t> (loop)];
-      const auto length = static_cast<std::size_t> (loops.lengths[static_cast<std::size_t> (loop)]);
-      ring_.clear ();
-      positions_.clear ();
-      normals_.clear ();
-      for (std::size_t i = 0; i < length; ++i)
-      {
-        const CellEdge edge = cellEdge (edges[i]);
-        ring_.push_back (grid_.vertexOnEdge (cell + cornerOffset (edge.corner), edge.axis));
-        positions_.push_back (vertices_.positions[static_cast<std::size_t> (ring_.back ())]);
-        normals_.push_back (vertices_.normals[static_cast<std::size_t> (ring_.back ())]);
-      }
-      corners_.clear ();
-      if (!triangulateLoop (positions_, normals_, edges, corners_))
-      {
-        output.centered_loops.push_back (ring_);
-        continue;
-      }
-      for (const Triangle &t : corners_)
-        output.triangles.push_back ({at (t[0]), at (t[1]), at (t[2])});
-    }
-  }
-
-private:
-  int
-  at (int corner) const
-  {
-    return ring_[static_cast<std::size_t> (corner)];
-  }
-
-  const SparseGrid &grid_;
-  const SurfaceVertices &vertices_;
-  std::vector<int> ring_;
-  std::vector<Eigen::Vector3d> positions_, normals_;
-  std::vector<Triangle> corners_;
-};
-
-/** \brief Adds a fan around a new vertex in the middle of a loop. */
+/** \brief Put a vertex in the middle of each loop, with triangles around it. */
 void
-addFan (const std::vector<int> &ring, std::vector<Triangle> &triangles, SurfaceVertices &vertices)
+meshCentered (const std::vector<CellLoop> &loops, std::vector<Triangle> &triangles, SurfaceVertices &vertices)
 {
-  Eigen::Vector3d middle = Eigen::Vector3d::Zero ();
-  for (const int v : ring)
-    middle += vertices.positions[static_cast<std::size_t> (v)] / static_cast<double> (ring.size ());
-  const int center = static_cast<int> (vertices.positions.size ());
-  vertices.positions.push_back (middle);
-  for (std::size_t i = 0; i < ring.size (); ++i)
-    triangles.push_back ({ring[i], ring[(i + 1) % ring.size ()], center});
-}
-
-/** \brief All cells' triangles, in the order of the cells. */
-std::vector<Triangle>
-meshCells (const SparseGrid &grid, const std::vector<GridPoint> &cells, int threads, SurfaceVertices &vertices)
-{
-  constexpr std::size_t STRETCH = 1024;
-  std::vector<CellOutput> outputs ((cells.size () + STRETCH - 1) / STRETCH);
-  parallelFor (
-      outputs.size (), threads, [&] { return CellMesher (grid, vertices); },
-      [&] (CellMesher &mesher, std::size_t i)
-      {
-        for (std::size_t c = i * STRETCH; c < std::min (cells.size (), (i + 1) * STRETCH); ++c)
-          mesher.mesh (cells[c], outputs[i]);
-      });
-  std::vector<Triangle> triangles;
-  for (const CellOutput &output : outputs)
-    triangles.insert (triangles.end (), output.triangles.begin (), output.triangles.end ());
-  for (const CellOutput &output : outputs)
-    for (const std::vector<int> &ring : output.centered_loops)
-      addFan (ring, triangles, vertices);
-  return triangles;
+  for (const CellLoop &loop : loops)
+  {
+    Eigen::Vector3d middle = Eigen::Vector3d::Zero ();
+    for (const int v : loop.ring)
+      middle += vertices.positions[static_cast<std::size_t> (v)] / static_cast<double> (loop.ring.size ());
+    addFan (loop.ring, static_cast<int> (vertices.positions.size ()), triangles);
+    vertices.positions.push_back (middle);
+  }
 }
 
 /** \brief Drops the pieces of surface that too few nodes support; returns how many. */
@@ -294,8 +220,12 @@ polygonize (const ImplicitField &field, const PolygonizerOptions &options, Trian
   placeVertices (field, options, grid, vertices, report, partOf (progress, 0.5, 0.5));
 
   const std::size_t on_edges = vertices.positions.size ();
-  std::vector<Triangle> triangles = meshCells (grid, tracker.activeCells (), options.threads, vertices);
+  CellMesh cell_mesh = meshCells (grid, tracker.activeCells (), options.threads, vertices);
+  std::vector<Triangle> triangles = std::move (cell_mesh.triangles);
+  meshCentered (cell_mesh.centered_loops, triangles, vertices);
   projectVertices (field, options, on_edges, 0.3 * voxel, vertices, report);
+  const std::vector<MeshedLoop> loops = meshLoops (field, options, cell_mesh.mixed_loops, voxel, vertices, report);
+  const std::vector<VertexPair> creases = addCreases (cell_mesh.mixed_loops, loops, triangles, vertices);
   const std::size_t in_cells = vertices.positions.size ();
   trimBorder (options.border_offset, triangles, vertices);
   projectVertices (field, options, in_cells, 0.1 * voxel, vertices, report);

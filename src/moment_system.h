@@ -82,14 +82,16 @@ public:
   /** \brief M = L D L^T without pivoting, polynomials first, so that each pivot is what the nodes say about a term
    * beyond the terms before it.
    * \param[in] floors per term, below which its pivot is raised
+   * \param[in] fades per term, by how much its pivot is raised whatever it is; zero for a term in full force
    */
   void
-  factorize (const Vector &floors)
+  factorize (const Vector &floors, const Vector &fades)
   {
     const int n = size ();
     for (int j = 0; j < n; ++j)
     {
       raisePivot (j, moments_ (j, j), floors[j]);
+      moments_ (j, j) += fades[j];
       const double inverse = 1.0 / moments_ (j, j);
       for (int k = j + 1; k < n; ++k)
       {
@@ -147,7 +149,7 @@ public:
     return pivots_[j];
   }
 
-  /** \brief How much the pivot of term j was raised: ρ_j; zero for a term the nodes determine. */
+  /** \brief How much the pivot of term j was raised for its floor: ρ_j; zero for a term the nodes determine. */
   double
   raise (int j) const
   {

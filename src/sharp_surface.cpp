@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <erkpa/sharp_surface.h>
 
+#include <algorithm>
 #include <cmath>
-#include <string>
 #include <utility>
 
 namespace erkpa
@@ -10,6 +10,8 @@ namespace erkpa
 
 namespace
 {
+
+using Kind = SharpSurfaceParts::Kind;
 
 class SharpFunction : public SharpSurface
 {
@@ -56,16 +58,23 @@ public:
     return back_->jacobian (x).transpose () * surface_->thetaGradient (back_->map (x));
   }
 
-  const SharpSurface &
-  surface () const
+  double
+  presence (const Eigen::Vector3d &x, double radius, PresenceSlope *slope) const override
   {
-    return *surface_;
+    const double presence = surface_->presence (back_->map (x), radius, slope);
+    if (slope != nullptr)
+      slope->by_position = back_->jacobian (x).transpose () * slope->by_position;
+    return presence;
   }
 
-  const SpaceWarp *
-  back () const
+  SharpSurfaceParts
+  parts () const override
   {
-    return back_.get ();
+    SharpSurfaceParts parts;
+    parts.kind = Kind::WARPED;
+    parts.surface = surface_;
+    parts.warp = back_;
+    return parts;
   }
 
 private:
@@ -90,128 +99,135 @@ public:
     return other_->thetaGradient (x) - face_->thetaGradient (x);
   }
 
+  SharpSurfaceParts
+  parts () const override
+  {
+    SharpSurfaceParts parts;
+    parts.kind = Kind::BETWEEN;
+    parts.surface = face_;
+    parts.other = other_;
+    return parts;
+  }
+
 private:
   ConstPtr face_, other_;
 };
 
-/** \brief v / |v|; any unit vector for v = 0, where a distance has no gradient. */
-Eigen::Vector3d
-direction (const Eigen::Vector3d &v)
-{
-  const double length = v.norm ();
-  return length > 0.0 ? Eigen::Vector3d (v / length) : Eigen::Vector3d::UnitX ();
-}
-
-class SharpSphere : public SharpSurface
+/** \brief The same for two planes: a plane, too. */
+class PlaneBetween : public SharpPlane
 {
 public:
-  SharpSphere (const Eigen::Vector3d &center, double radius) : center_ (center), radius_ (radius) {}
-
-  double
-  theta (const Eigen::Vector3d &x) const override
+  PlaneBetween (const Eigen::Vector3d &unit_normal, double offset, ConstPtr face, ConstPtr other)
+      : SharpPlane (unit_normal, offset), face_ (std::move (face)), other_ (std::move (other))
   {
-    return (x - center_).norm () - radius_;
   }
 
-  Eigen::Vector3d
-  thetaGradient (const Eigen::Vector3d &x) const override
+  SharpSurfaceParts
+  parts () const override
   {
-    return direction (x - center_);
+    SharpSurfaceParts parts;
+    parts.kind = Kind::BETWEEN;
+    parts.surface = face_;
+    parts.other = other_;
+    parts.plane = this;
+    return parts;
   }
 
 private:
-  Eigen::Vector3d center_;
-  double radius_;
+  ConstPtr face_, other_;
 };
 
-/** \brief A surface around an axis whose radius is radius + slope * height: a cylinder or one nappe of a cone. */
-class SharpRevolution : public SharpSurface
+/** \brief A surface whose presence is that of an extent. */
+class LimitedSurface : public SharpSurface
 {
 public:
-  SharpRevolution (const Eigen::Vector3d &point, const Eigen::Vector3d &axis, double radius, double angle)
-      : point_ (point), axis_ (axis), radius_ (radius), cosine_ (std::cos (angle)), sine_ (std::sin (angle))
+  LimitedSurface (ConstPtr surface, Extent::ConstPtr extent, double fade)
+      : surface_ (std::move (surface)), extent_ (std::move (extent)), bounds_ (extent_->bounds ()), fade_ (fade)
   {
   }
 
   double
   theta (const Eigen::Vector3d &x) const override
   {
-    const double height = axis_.dot (x - point_);
-    return cosine_ * (across (x).norm () - radius_) - sine_ * height;
+    return surface_->theta (x);
   }
 
   Eigen::Vector3d
   thetaGradient (const Eigen::Vector3d &x) const override
   {
-    return cosine_ * direction (across (x)) - sine_ * axis_;
+    return surface_->thetaGradient (x);
+  }
+
+  double
+  presence (const Eigen::Vector3d &x, double radius, PresenceSlope *slope) const override;
+
+  bool
+  isAbsentIn (const Eigen::Vector3d &center, double radius) const override
+  {
+    // The distance d grows by at most one in one. By the automatic fade a point with the support radius ε is absent
+    // where d >= ε, and the ball reaches ε beyond it.
+    const double gone = radius + fade_;
+    return bounds_.exteriorDistance (center) >= gone || extent_->distance (center) >= gone ||
+           surface_->isAbsentIn (center, radius);
+  }
+
+  SharpSurfaceParts
+  parts () const override
+  {
+    SharpSurfaceParts parts;
+    parts.kind = Kind::LIMITED;
+    parts.surface = surface_;
+    parts.extent = extent_;
+    parts.fade = fade_;
+    return parts;
   }
 
 private:
-  Eigen::Vector3d
-  across (const Eigen::Vector3d &x) const
-  {
-    const Eigen::Vector3d d = x - point_;
-    return d - axis_.dot (d) * axis_;
-  }
-
-  Eigen::Vector3d point_, axis_;
-  double radius_, cosine_, sine_;
+  ConstPtr surface_;
+  Extent::ConstPtr extent_;
+  Eigen::AlignedBox3d bounds_;
+  double fade_;
 };
 
-/** \brief What a model's coefficients are called in messages, and how many there are. */
-struct ModelText
+double
+LimitedSurface::presence (const Eigen::Vector3d &x, double radius, PresenceSlope *slope) const
 {
-  const char *text;
-  std::size_t count;
-};
-
-ModelText
-textOf (SurfaceModel model)
-{
-  switch (model)
-  {
-    case SurfaceModel::SPHERE:
-      return {"a sharp sphere needs the four coefficients x, y, z of its center and its radius", 4};
-    case SurfaceModel::CYLINDER:
-      return {
-          "a sharp cylinder needs seven coefficients: a point x, y, z on the axis, the direction x, y, z of the axis, "
-          "and the radius",
-          7};
-    case SurfaceModel::CONE:
-      return {
-          "a sharp cone needs seven coefficients: the apex x, y, z, the direction x, y, z of the axis, and the angle "
-          "between axis and side",
-          7};
-    case SurfaceModel::PLANE:
-      break;
-  }
-  return {"a sharp edge needs the four coefficients a, b, c, d of a plane a x + b y + c z + d = 0", 4};
-}
-
-/** \brief Why the coefficients make no such surface; empty where they do. */
-std::string
-faultOf (SurfaceModel model, const std::vector<float> &c)
-{
-  const std::size_t count = textOf (model).count;
-  if (c.size () != count)
-    return "but " + std::to_string (c.size ()) + " are given";
-  for (const float value : c)
-    if (!std::isfinite (value))
-      return "but one of them is not finite";
-  if (model == SurfaceModel::PLANE && c[0] == 0.0f && c[1] == 0.0f && c[2] == 0.0f)
-    return "but its normal a, b, c is zero";
-  if (model == SurfaceModel::SPHERE && !(c[3] > 0.0f))
-    return "but the radius is not positive";
-  if (count == 7 && c[3] == 0.0f && c[4] == 0.0f && c[5] == 0.0f)
-    return "but the direction of the axis is zero";
-  if (model == SurfaceModel::CYLINDER && !(c[6] > 0.0f))
-    return "but the radius is not positive";
-  if (model == SurfaceModel::CONE && !(c[6] > 0.0f && c[6] < static_cast<float> (M_PI_2)))
-    return "but the angle is not between 0 and pi/2";
-  return "";
+  const double start = fade_ > 0.0 ? 0.0 : 0.5 * radius, length = fade_ > 0.0 ? fade_ : 0.5 * radius;
+  Eigen::Vector3d away;
+  const double distance = extent_->distance (x, slope != nullptr ? &away : nullptr);
+  PresenceSlope inner_slope;
+  const double inner = surface_->presence (x, radius, slope != nullptr ? &inner_slope : nullptr);
+  const double t = std::clamp ((distance - start) / length, 0.0, 1.0), own = 1.0 - t * t * (3.0 - 2.0 * t);
+  if (slope == nullptr)
+    return inner * own;
+  const double by_t = -6.0 * t * (1.0 - t);
+  const double t_by_radius = fade_ > 0.0 ? 0.0 : -2.0 * distance / (radius * radius);
+  slope->by_position = own * inner_slope.by_position + inner * by_t / length * away;
+  slope->by_radius = own * inner_slope.by_radius + inner * by_t * t_by_radius;
+  return inner * own;
 }
 
 } // namespace
+
+double
+SharpSurface::presence (const Eigen::Vector3d & /*x*/, double /*radius*/, PresenceSlope *slope) const
+{
+  if (slope != nullptr)
+    *slope = PresenceSlope ();
+  return 1.0;
+}
+
+bool
+SharpSurface::isAbsentIn (const Eigen::Vector3d & /*center*/, double /*radius*/) const
+{
+  return false;
+}
+
+SharpSurfaceParts
+SharpSurface::parts () const
+{
+  return {};
+}
 
 SharpSurface::ConstPtr
 makeSharpFunction (std::function<double (const Eigen::Vector3d &)> theta,
@@ -236,51 +252,57 @@ makeSharpBetween (SharpSurface::ConstPtr face, SharpSurface::ConstPtr other)
   if (!face || !other)
     return nullptr;
   const auto between = std::make_shared<SharpBetween> (face, other);
-  const bool are_planes = dynamic_cast<const SharpPlane *> (face.get ()) != nullptr &&
-                          dynamic_cast<const SharpPlane *> (other.get ()) != nullptr;
-  if (!are_planes)
+  if (face->parts ().plane == nullptr || other->parts ().plane == nullptr)
     return between;
   const Eigen::Vector3d zero = Eigen::Vector3d::Zero (), normal = between->thetaGradient (zero);
   constexpr double PARALLEL = 1e-6;
   if (!(normal.norm () > PARALLEL))
     return nullptr;
-  return std::make_shared<SharpPlane> (normal.normalized (), between->theta (zero) / normal.norm ());
+  const double offset = between->theta (zero) / normal.norm ();
+  return std::make_shared<PlaneBetween> (normal.normalized (), offset, std::move (face), std::move (other));
 }
 
-Outcome
-makeSharpSurface (SurfaceModel model, const std::vector<float> &coefficients, SharpSurface::ConstPtr &surface)
+SharpSurface::ConstPtr
+makeLimited (SharpSurface::ConstPtr surface, Extent::ConstPtr extent, double fade)
 {
-  const std::string fault = faultOf (model, coefficients);
-  if (!fault.empty ())
-    return {Status::INVALID_SETTING, std::string (textOf (model).text) + ", " + fault};
-  const auto vector = [&] (std::size_t first)
-  { return Eigen::Vector3d (coefficients[first], coefficients[first + 1], coefficients[first + 2]); };
-  const double last = coefficients.back ();
-  switch (model)
-  {
-    case SurfaceModel::PLANE:
-      surface = std::make_shared<SharpPlane> (vector (0).normalized (), last / vector (0).norm ());
-      break;
-    case SurfaceModel::SPHERE:
-      surface = std::make_shared<SharpSphere> (vector (0), last);
-      break;
-    case SurfaceModel::CYLINDER:
-      surface = std::make_shared<SharpRevolution> (vector (0), vector (3).normalized (), last, 0.0);
-      break;
-    case SurfaceModel::CONE:
-      surface = std::make_shared<SharpRevolution> (vector (0), vector (3).normalized (), 0.0, last);
-      break;
-  }
-  return {};
+  if (!surface || !extent || !(fade >= 0.0) || !std::isfinite (fade))
+    return nullptr;
+  return std::make_shared<LimitedSurface> (std::move (surface), std::move (extent), fade);
 }
 
 const SharpPlane *
 planeBehind (const SharpSurface &surface, const SpaceWarp **warp)
 {
-  const auto *warped = dynamic_cast<const WarpedSharpSurface *> (&surface);
   if (warp != nullptr)
-    *warp = warped != nullptr ? warped->back () : nullptr;
-  return dynamic_cast<const SharpPlane *> (warped != nullptr ? &warped->surface () : &surface);
+    *warp = nullptr;
+  bool is_warped = false;
+  for (SharpSurfaceParts parts = surface.parts ();; parts = parts.surface->parts ())
+  {
+    if (parts.kind == Kind::WARPED && !is_warped)
+    {
+      is_warped = true;
+      if (warp != nullptr)
+        *warp = parts.warp.get ();
+    }
+    else if (parts.kind != Kind::LIMITED)
+      return parts.plane;
+  }
+}
+
+bool
+facesBehind (const SharpSurface &surface, SharpSurface::ConstPtr &face, SharpSurface::ConstPtr &other,
+             Extent::ConstPtr &extent)
+{
+  SharpSurfaceParts parts = surface.parts ();
+  const Extent::ConstPtr outermost = parts.extent;
+  while (parts.kind == Kind::LIMITED)
+    parts = parts.surface->parts ();
+  if (parts.kind != Kind::BETWEEN)
+    return false;
+  face = parts.surface;
+  other = parts.other;
+  extent = outermost;
+  return true;
 }
 
 } // namespace erkpa

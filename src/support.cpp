@@ -10,7 +10,8 @@ namespace erkpa
 namespace
 {
 
-constexpr double ROUNDING = 1e-5; // searches measure in float: this share of a length is left for it
+constexpr double PART_REACH = 2.2; // radius of a part's support, at most, in radii of the whole
+constexpr double ROUNDING = 1e-5;  // searches measure in float: this share of a length is left for it
 
 } // namespace
 
@@ -42,6 +43,16 @@ Support::gather (const Eigen::Vector3d &center, double extent)
       size_.nodesReaching (center, extent + field_.largestOffset (), candidates_);
       break;
   }
+  std::sort (candidates_.begin (), candidates_.end ());
+  makeValuePoints ();
+}
+
+void
+Support::gatherForParts (double extent)
+{
+  if (size_.kind () != SupportSize::Kind::NEAREST)
+    return;
+  search (center_, PART_REACH * (center_radius_ + extent) + extent);
   std::sort (candidates_.begin (), candidates_.end ());
   makeValuePoints ();
 }
@@ -167,6 +178,29 @@ Support::measureNearestRadius (const Eigen::Vector3d &x)
     radius_gradient_ = (x - position (i)) / radius_;
 }
 
+/** \brief The k-th nearest node of the part, up to a limit; radius_ is that of all nodes before. */
+void
+Support::measurePartRadius (const Eigen::Vector3d &x)
+{
+  const double limit = PART_REACH * whole_radius_;
+  scratch_.clear ();
+  for (std::size_t i = 0; i < squared_.size (); ++i)
+    if (squared_[i] < limit * limit && isOnSurface (i) && isMember (i))
+      scratch_.push_back (squared_[i]);
+  const auto k = static_cast<std::size_t> (size_.k ());
+  radius_ = limit;
+  radius_gradient_ = PART_REACH * whole_radius_gradient_;
+  if (scratch_.size () >= k)
+  {
+    std::nth_element (scratch_.begin (), scratch_.begin () + static_cast<std::ptrdiff_t> (k - 1), scratch_.end ());
+    const double kth = scratch_[k - 1];
+    radius_ = std::sqrt (kth);
+    const auto i = static_cast<std::size_t> (std::find (squared_.begin (), squared_.end (), kth) - squared_.begin ());
+    radius_gradient_ = radius_ > 0.0 ? Eigen::Vector3d ((x - position (i)) / radius_) : Eigen::Vector3d::Zero ();
+  }
+  growth_ = 2.0 * radius_gradient_;
+}
+
 double
 Support::quartileDistance () const
 {
@@ -230,20 +264,39 @@ bool
 Support::select (const Eigen::Vector3d &x)
 {
   measureDistances (x);
+  members_ = nullptr;
+  if (size_.kind () != SupportSize::Kind::PER_NODE)
+    measureRadius (x);
+  whole_radius_ = radius_;
+  whole_radius_gradient_ = radius_gradient_;
+  return weighNodes (x);
+}
+
+bool
+Support::selectPart (const Eigen::Vector3d &x, const std::vector<char> &members)
+{
+  members_ = &members;
+  if (size_.kind () == SupportSize::Kind::NEAREST)
+    measurePartRadius (x);
+  return weighNodes (x);
+}
+
+bool
+Support::weighNodes (const Eigen::Vector3d &x)
+{
   nodes_.clear ();
   if (size_.kind () == SupportSize::Kind::PER_NODE)
   {
     weighByOwnRadii (x);
     return nodes_.size () >= MIN_NODES;
   }
-  measureRadius (x);
   const double limit = radius_ * radius_;
   if (!(radius_ > 0.0) || !std::isfinite (limit))
     return false;
   const double scale = 1.0 / radius_;
   for (std::size_t i = 0; i < squared_.size (); ++i)
   {
-    if (squared_[i] >= limit)
+    if (squared_[i] >= limit || !isMember (i))
       continue;
     const Eigen::Vector3d u = Eigen::Vector3d (px_[i] - x[0], py_[i] - x[1], pz_[i] - x[2]) * scale;
     const double t = std::sqrt (has_shapes_ ? u.dot (stretched (points_[i].node, u)) : squared_[i] * scale * scale);
@@ -263,7 +316,7 @@ Support::weighByOwnRadii (const Eigen::Vector3d &x)
   for (std::size_t i = 0; i < squared_.size (); ++i)
   {
     const auto own = static_cast<double> (field_.points ().radii[static_cast<std::size_t> (points_[i].node)]);
-    if (squared_[i] >= own * own)
+    if (squared_[i] >= own * own || !isMember (i))
       continue;
     const Eigen::Vector3d d = position (i) - x;
     const double t = std::sqrt (has_shapes_ ? d.dot (stretched (points_[i].node, d)) : squared_[i]) / own;

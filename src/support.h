@@ -5,6 +5,7 @@
 
 #include <erkpa/implicit_field.h>
 
+#include <cmath>
 #include <vector>
 
 namespace erkpa
@@ -53,11 +54,38 @@ public:
   bool
   select (const Eigen::Vector3d &x);
 
+  /** \brief Gather farther than gather () did for the same ball, so that parts of the nodes make supports, too. */
+  void
+  gatherForParts (double extent);
+
+  /** \brief Narrow the support selected at \a x to a part of the gathered value points.
+   *
+   * Where k nearest nodes make the radius, it becomes that of the k nearest of the part, up to a limit.
+   * \param[in] members whether a value point is of the part, by slot
+   * \return false where too few nodes are in reach to define the field
+   */
+  bool
+  selectPart (const Eigen::Vector3d &x, const std::vector<char> &members);
+
   /** \brief The value points gathered, by node. */
   const std::vector<ValuePoint> &
   points () const
   {
     return points_;
+  }
+
+  /** \brief The middle of the ball that was gathered for. */
+  const Eigen::Vector3d &
+  center () const
+  {
+    return center_;
+  }
+
+  /** \brief All that was gathered lies within this distance of it. */
+  double
+  reach () const
+  {
+    return size_.kind () == SupportSize::Kind::PER_NODE ? HUGE_VAL : reach_ + field_.largestOffset ();
   }
 
   const ValuePoint &
@@ -134,6 +162,18 @@ private:
   measureNearestRadius (const Eigen::Vector3d &x);
 
   void
+  measurePartRadius (const Eigen::Vector3d &x);
+
+  bool
+  weighNodes (const Eigen::Vector3d &x);
+
+  bool
+  isMember (std::size_t slot) const
+  {
+    return members_ == nullptr || (*members_)[slot] != 0;
+  }
+
+  void
   weighByOwnRadii (const Eigen::Vector3d &x);
 
   /** \brief S^T S d of a node's support shape S: what its distance grows by. */
@@ -162,8 +202,11 @@ private:
   mutable std::vector<double> scratch_;
   std::vector<float> found_;
   std::vector<SupportNode> nodes_;
+  const std::vector<char> *members_ = nullptr; // null: all
   double radius_ = 0.0;
   Eigen::Vector3d radius_gradient_ = Eigen::Vector3d::Zero ();
+  double whole_radius_ = 0.0; // of all nodes, where the support is that of a part
+  Eigen::Vector3d whole_radius_gradient_ = Eigen::Vector3d::Zero ();
   Eigen::Vector3d growth_ = Eigen::Vector3d::Zero ();
 };
 

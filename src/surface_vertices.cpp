@@ -66,6 +66,7 @@ storeVertex (const LocalField &local, const LocalSample &sample, const Eigen::Ve
   const double slope = sample.gradient.norm ();
   vertices.normals[vertex] = slope > 0.0 ? Eigen::Vector3d (sample.gradient / slope) : Eigen::Vector3d::Zero ();
   vertices.border_offsets[vertex] = sample.border_offset;
+  vertices.faces[vertex] = local.face ();
   if (channels > 0)
     local.blendAttributes (&vertices.attributes[vertex * static_cast<std::size_t> (channels)]);
 }

@@ -17,6 +17,7 @@ struct SurfaceVertices
   std::vector<Eigen::Vector3d> positions;
   std::vector<Eigen::Vector3d> normals; ///< unit, ∇f/|∇f|
   std::vector<double> border_offsets;   ///< see LocalSample::border_offset
+  std::vector<int> faces;               ///< face whose piece of f the vertex is on; -1 where there are none
   std::vector<float> attributes;        ///< channels values per vertex
 
   void
@@ -25,6 +26,7 @@ struct SurfaceVertices
     positions.resize (size);
     normals.resize (size);
     border_offsets.resize (size);
+    faces.resize (size, -1);
     attributes.resize (size * static_cast<std::size_t> (channels));
   }
 
@@ -39,6 +41,7 @@ struct SurfaceVertices
     positions.push_back (position);
     normals.push_back (normal);
     border_offsets.push_back (border_offsets[vertex]);
+    faces.push_back (faces[vertex]);
   }
 };
 

@@ -17,6 +17,7 @@
 namespace erkpa
 {
 
+class FaceMap;
 struct Pencil;
 class SupportSize;
 
@@ -215,6 +216,12 @@ public:
   void
   setNodeValues (std::vector<double> values);
 
+  void
+  setFaces (std::shared_ptr<const FaceMap> faces)
+  {
+    faces_ = std::move (faces);
+  }
+
   /** \brief The nodes where the surface is: warped where the field is. Local frame. */
   const std::vector<Eigen::Vector3f> &
   surfacePositions () const
@@ -241,6 +248,13 @@ public:
   pencils () const
   {
     return *pencils_;
+  }
+
+  /** \brief The faces that found sharp surfaces keep apart; null where there are none. */
+  const FaceMap *
+  faces () const
+  {
+    return faces_.get ();
   }
 
   /** \brief Size of the smallest feature the nodes can show: the spacing, or more where noise hides finer ones. */
@@ -272,6 +286,7 @@ private:
   std::vector<Eigen::Vector3f> warped_positions_;
   NeighborSearch::ConstPtr warped_search_;
   std::shared_ptr<const std::vector<Pencil>> pencils_;
+  std::shared_ptr<const FaceMap> faces_;
   double typical_radius_ = 0.0;
   double spacing_ = 0.0;
   double feature_size_ = 0.0;

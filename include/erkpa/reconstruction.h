@@ -6,6 +6,7 @@
 #include <erkpa/marching_cubes.h>
 #include <erkpa/normals.h>
 #include <erkpa/oriented_points.h>
+#include <erkpa/sharp_detection.h>
 #include <erkpa/triangle_mesh.h>
 
 #include <functional>
@@ -26,6 +27,7 @@ struct Options
 {
   PointOptions points;
   NormalOptions normals;
+  SharpOptions sharp;
   FieldOptions field;
   PolygonizerOptions polygonizer;
 };

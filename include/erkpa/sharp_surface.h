@@ -1,17 +1,29 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <erkpa/extent.h>
 #include <erkpa/space_warp.h>
 #include <erkpa/status.h>
 
 #include <Eigen/Core>
 
+#include <array>
 #include <functional>
 #include <memory>
 #include <vector>
 
 namespace erkpa
 {
+
+struct FacePoints;
+struct SharpSurfaceParts;
+
+/** \brief How a presence changes. */
+struct PresenceSlope
+{
+  Eigen::Vector3d by_position = Eigen::Vector3d::Zero (); ///< with x, per unit of length
+  double by_radius = 0.0;                                 ///< with the support radius, per unit of length
+};
 
 /** \brief A surface Γ = {θ = 0} that cuts a sharp edge: across it the gradient of the field may jump (eq. 21).
  *
@@ -36,6 +48,24 @@ public:
   /** \brief ∇θ(x). */
   virtual Eigen::Vector3d
   thetaGradient (const Eigen::Vector3d &x) const = 0;
+
+  /** \brief How much of the surface is in force at x: 1 in its extent, 0 far from it, C1 between. Always 1 without one.
+   * \param[in] x a point
+   * \param[in] radius support radius at x, by which an automatic fade goes
+   * \param[out] slope where not null
+   */
+  virtual double
+  presence (const Eigen::Vector3d &x, double radius, PresenceSlope *slope = nullptr) const;
+
+  /** \brief Whether the surface is absent at all points whose supports lie in a ball; false where that is not known.
+   * \param[in] center, radius the ball, which holds the supports of those points and the points themselves
+   */
+  virtual bool
+  isAbsentIn (const Eigen::Vector3d &center, double radius) const;
+
+  /** \brief What the surface was made from. */
+  virtual SharpSurfaceParts
+  parts () const;
 };
 
 /** \brief The plane n·x + d = 0 with |n| = 1. */
@@ -55,6 +85,9 @@ public:
   {
     return normal_;
   }
+
+  SharpSurfaceParts
+  parts () const override;
 
 private:
   Eigen::Vector3d normal_;
@@ -104,8 +137,57 @@ makeSharpSurface (SurfaceModel model, const std::vector<float> &coefficients, Sh
 SharpSurface::ConstPtr
 makeSharpBetween (SharpSurface::ConstPtr face, SharpSurface::ConstPtr other);
 
-/** \brief The plane behind a sharp surface that is a plane or a warped one, and the warp; null where it is none. */
+/** \brief A sharp surface that is in force in a region only.
+ *
+ * A term of the fit belongs to a support, not to a point: to be sharp at an edge, the surface must be present at all
+ * points whose supports reach the edge. A region must hence be wider than the edge by a support radius, or the fade
+ * be automatic, and then by half of one.
+ * \param[in] surface the whole surface
+ * \param[in] extent where it is in force
+ * \param[in] fade the length outside the extent over which it fades out; 0 = automatic: it stays in force up to half a
+ * support radius outside, and is gone at one
+ * \return null where one of them is null or \a fade is negative or not finite
+ */
+SharpSurface::ConstPtr
+makeLimited (SharpSurface::ConstPtr surface, Extent::ConstPtr extent, double fade = 0.0);
+
+/** \brief What a sharp surface was made from, to save it, to show it, or to find out which faces meet in it. */
+struct SharpSurfaceParts
+{
+  enum class Kind
+  {
+    OTHER,   ///< functions, or a class of the caller's own: not known
+    MODEL,   ///< \a model and \a coefficients
+    BETWEEN, ///< the faces \a surface and \a other
+    WARPED,  ///< \a surface seen through \a warp
+    LIMITED, ///< \a surface within \a extent
+    POINTS   ///< the face \a points
+  };
+
+  Kind kind = Kind::OTHER;
+  SurfaceModel model = SurfaceModel::PLANE;
+  std::array<double, 7> coefficients = {};  ///< as many as the model has; normals and directions of unit length
+  const SharpPlane *plane = nullptr;        ///< the surface itself where it is a plane, of coefficients or between two
+  SharpSurface::ConstPtr surface, other;    ///< the surfaces it was made from
+  SpaceWarp::ConstPtr warp;                 ///< of a warped one
+  Extent::ConstPtr extent;                  ///< of a limited one
+  double fade = 0.0;                        ///< of a limited one, as given to makeLimited ()
+  std::shared_ptr<const FacePoints> points; ///< of a face of points
+};
+
+/** \brief The plane behind a sharp surface that is a plane, whether warped or limited, and the warp; null where it is
+ * none. */
 const SharpPlane *
 planeBehind (const SharpSurface &surface, const SpaceWarp **warp = nullptr);
+
+/** \brief The faces between which makeSharpBetween () made a surface, limited or not.
+ * \param[in] surface any
+ * \param[out] face, other the surfaces given to makeSharpBetween (), in that order
+ * \param[out] extent of the limited one; null where it is not limited. Of several the outermost
+ * \return false where it is no such surface; the others are untouched then
+ */
+bool
+facesBehind (const SharpSurface &surface, SharpSurface::ConstPtr &face, SharpSurface::ConstPtr &other,
+             Extent::ConstPtr &extent);
 
 } // namespace erkpa

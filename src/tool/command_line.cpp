@@ -103,6 +103,13 @@ takeField (const po::variables_map &variables, FieldOptions &field)
 }
 
 void
+takeSharpEdges (const po::variables_map &variables, SharpOptions &sharp)
+{
+  sharp.automatic = variables["sharp_auto"].as<bool> ();
+  ifGiven (variables, "sharp_angle", [&] (const OptionText &o) { sharp.angle = toNumber (o); });
+}
+
+void
 takeMeshing (const po::variables_map &variables, CommandLine &line)
 {
   PolygonizerOptions &polygonizer = line.options.polygonizer;
@@ -187,6 +194,7 @@ parseCommandLine (int argc, const char *const *argv)
           refuseBoth (variables, one, other);
     takeSupport (variables, line.options);
     takeField (variables, line.options.field);
+    takeSharpEdges (variables, line.options.sharp);
     takeMeshing (variables, line);
     const Outcome outcome = ImplicitField::checkOptions (line.options.field);
     if (!outcome.ok ())

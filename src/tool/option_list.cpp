@@ -111,6 +111,9 @@ describeField (const FieldOptions &field)
        "the same with a cylinder: point on the axis, direction of the axis, radius (default: none)") //
       ("sharp_cone", words ("x,y,z,dx,dy,dz,angle"),
        "the same with a cone: apex, direction of the axis, angle between axis and side in radians (default: none)") //
+      ("sharp_auto", po::bool_switch (), "find sharp edges in the points (default: not)") //
+      ("sharp_angle", word ("DEGREES"),
+       withDefault ("edges that turn by less are taken for smooth", SharpOptions ().angle).c_str ()) //
       ("enrichment", word ("NAME"),
        withDefault (listNames (ENRICHMENTS) + ": what sharp edges add to the field; jump is for functional constraints",
                     nameOf (ENRICHMENTS, field.enrichment))

@@ -1,0 +1,40 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "sparse_grid.h"
+#include "surface_vertices.h"
+
+#include <array>
+#include <vector>
+
+namespace erkpa
+{
+
+/** \brief A closed polygon in which the surface crosses a cell, over the vertices on the cell's edges. */
+struct CellLoop
+{
+  std::vector<int> ring;              ///< vertices, counter-clockwise from outside
+  std::array<int, 12> edges{};        ///< the cell's edge of each
+};
+
+/** \brief What the cells give. */
+struct CellMesh
+{
+  std::vector<std::array<int, 3>> triangles;
+  std::vector<CellLoop> centered_loops; ///< need a vertex of their own inside the cell
+  std::vector<CellLoop> mixed_loops;    ///< have vertices of several faces: there may be a crease inside
+};
+
+/** \brief Turn the loops of cells into triangles over the placed vertices, in the order of the cells. */
+CellMesh
+meshCells (const SparseGrid &grid, const std::vector<GridPoint> &cells, int threads, const SurfaceVertices &vertices);
+
+/** \brief Triangulate one loop without new vertices; false where it needs one. */
+bool
+triangulateCell (const CellLoop &loop, const SurfaceVertices &vertices, std::vector<std::array<int, 3>> &triangles);
+
+/** \brief Add the triangles between a loop and the vertex \a center in its middle. */
+void
+addFan (const std::vector<int> &ring, int center, std::vector<std::array<int, 3>> &triangles);
+
+} // namespace erkpa

@@ -1,0 +1,206 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "crease_edges.h"
+
+#include <Eigen/Geometry>
+
+#include <algorithm>
+#include <map>
+#include <set>
+
+namespace erkpa
+{
+
+namespace
+{
+
+using Triangle = std::array<int, 3>;
+
+/** \brief Decides which loops keep their crease vertex and which crossings become crease edges. */
+class CreaseBuilder
+{
+public:
+  CreaseBuilder (const std::vector<CellLoop> &loops, const std::vector<MeshedLoop> &meshed,
+                 std::vector<Triangle> &triangles, SurfaceVertices &vertices)
+      : loops_ (loops), meshed_ (meshed), triangles_ (triangles), vertices_ (vertices), centers_ (loops.size (), -1),
+        on_crease_ (loops.size (), 0)
+  {
+  }
+
+  std::vector<VertexPair>
+  build ()
+  {
+    for (std::size_t i = 0; i < loops_.size (); ++i)
+      if (meshed_[i].has_center)
+      {
+        on_crease_[i] = 1;
+        centers_[i] = appendVertex (meshed_[i]);
+        for (const VertexPair &pair : meshed_[i].crossings)
+          crossings_[pair].push_back (static_cast<int> (i));
+      }
+    bool changed = true;
+    while (changed)
+    {
+      changed = false;
+      pairLoops ();
+      for (std::size_t i = 0; i < loops_.size (); ++i)
+        if (on_crease_[i] && isFolded (i))
+        {
+          on_crease_[i] = 0;
+          changed = true;
+        }
+    }
+    for (std::size_t i = 0; i < loops_.size (); ++i)
+      meshLoop (i);
+    return {creases_.begin (), creases_.end ()};
+  }
+
+private:
+  int
+  appendVertex (const MeshedLoop &loop)
+  {
+    const int center = static_cast<int> (vertices_.positions.size ());
+    vertices_.positions.push_back (loop.position);
+    vertices_.normals.push_back (loop.normal);
+    vertices_.border_offsets.push_back (loop.border_offset);
+    vertices_.faces.push_back (loop.face);
+    vertices_.attributes.insert (vertices_.attributes.end (), loop.attributes.begin (), loop.attributes.end ());
+    return center;
+  }
+
+  /** \brief Find for each crossing the two loops whose vertices the crease joins; each two are joined once. */
+  void
+  pairLoops ()
+  {
+    joined_.clear ();
+    creases_.clear ();
+    for (const auto &[pair, of] : crossings_)
+      if (of.size () == 2 && on_crease_[static_cast<std::size_t> (of[0])] && on_crease_[static_cast<std::size_t> (of[1])])
+      {
+        const VertexPair edge = orderedPair (center (of[0]), center (of[1]));
+        if (edge.first != edge.second && creases_.insert (edge).second)
+          joined_[pair] = {of[0], of[1]};
+      }
+  }
+
+  int
+  center (int loop) const
+  {
+    return centers_[static_cast<std::size_t> (loop)];
+  }
+
+  /** \brief The vertex that the crease through the side a, b of a loop goes on to; -1 where none runs through it. */
+  int
+  nextOnCrease (std::size_t loop, int a, int b) const
+  {
+    const auto found = joined_.find (orderedPair (a, b));
+    if (found == joined_.end ())
+      return -1;
+    const auto &[one, other] = found->second;
+    return static_cast<int> (loop) == one ? center (other) : center (one);
+  }
+
+  Eigen::Vector3d
+  areaOf (int a, int b, int c) const
+  {
+    const auto at = [this] (int v) { return vertices_.positions[static_cast<std::size_t> (v)]; };
+    return (at (b) - at (a)).cross (at (c) - at (a));
+  }
+
+  /** \brief Whether a triangle looks away from where the surface does. */
+  bool
+  looksAway (int a, int b, int c, const Eigen::Vector3d &normal) const
+  {
+    constexpr double LEAST = 0.2; // cosine; a triangle across an edge of the surface has more
+    const Eigen::Vector3d area = areaOf (a, b, c);
+    return area.dot (normal) < LEAST * area.norm () * normal.norm ();
+  }
+
+  const Eigen::Vector3d &
+  normal (int v) const
+  {
+    return vertices_.normals[static_cast<std::size_t> (v)];
+  }
+
+  bool
+  isFolded (std::size_t loop) const
+  {
+    const std::vector<int> &ring = loops_[loop].ring;
+    const int c = centers_[loop];
+    for (std::size_t i = 0; i < ring.size (); ++i)
+    {
+      const int a = ring[i], b = ring[(i + 1) % ring.size ()];
+      const int d = nextOnCrease (loop, a, b);
+      const bool folded = d < 0 ? looksAway (a, b, c, normal (a) + normal (b))
+                                : looksAway (a, d, c, normal (a)) || looksAway (b, c, d, normal (b));
+      if (folded)
+        return true;
+    }
+    return false;
+  }
+
+  void
+  meshLoop (std::size_t loop)
+  {
+    const std::vector<int> &ring = loops_[loop].ring;
+    if (!on_crease_[loop])
+    {
+      if (!triangulateCell (loops_[loop], vertices_, triangles_))
+        addFan (ring, middleOf (loop), triangles_);
+      return;
+    }
+    const int c = centers_[loop];
+    for (std::size_t i = 0; i < ring.size (); ++i)
+    {
+      const int a = ring[i], b = ring[(i + 1) % ring.size ()];
+      const int d = nextOnCrease (loop, a, b);
+      if (d < 0)
+        triangles_.push_back ({a, b, c});
+      else // the other loop sees b, a and adds the other half
+        triangles_.push_back ({a, d, c});
+    }
+  }
+
+  /** \brief A vertex in the middle of a loop that needs one. */
+  int
+  middleOf (std::size_t loop)
+  {
+    const std::vector<int> &ring = loops_[loop].ring;
+    MeshedLoop middle = meshed_[loop];
+    middle.position.setZero ();
+    middle.normal.setZero ();
+    for (const int v : ring)
+    {
+      middle.position += vertices_.positions[static_cast<std::size_t> (v)] / static_cast<double> (ring.size ());
+      middle.normal += normal (v);
+    }
+    middle.normal.normalize ();
+    const auto first = static_cast<std::size_t> (ring[0]);
+    const std::size_t channels = vertices_.attributes.size () / vertices_.positions.size ();
+    const auto from = vertices_.attributes.begin () + static_cast<std::ptrdiff_t> (first * channels);
+    middle.attributes.assign (from, from + static_cast<std::ptrdiff_t> (channels));
+    middle.border_offset = vertices_.border_offsets[first];
+    middle.face = vertices_.faces[first];
+    return appendVertex (middle);
+  }
+
+  const std::vector<CellLoop> &loops_;
+  const std::vector<MeshedLoop> &meshed_;
+  std::vector<Triangle> &triangles_;
+  SurfaceVertices &vertices_;
+  std::vector<int> centers_;
+  std::vector<char> on_crease_;
+  std::map<VertexPair, std::vector<int>> crossings_;      // the loops that a crossing is of
+  std::map<VertexPair, std::pair<int, int>> joined_; // the loops that it joins
+  std::set<VertexPair> creases_;
+};
+
+} // namespace
+
+std::vector<VertexPair>
+addCreases (const std::vector<CellLoop> &loops, const std::vector<MeshedLoop> &meshed, std::vector<Triangle> &triangles,
+            SurfaceVertices &vertices)
+{
+  return CreaseBuilder (loops, meshed, triangles, vertices).build ();
+}
+
+} // namespace erkpa

@@ -1,0 +1,24 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "feature_loops.h"
+
+#include <array>
+#include <vector>
+
+namespace erkpa
+{
+
+/** \brief Add the triangles of loops with creases.
+ *
+ * Each loop becomes a fan around its vertex on the crease. After the fans of both cells at a crossing are there, the
+ * edge between the two crossing vertices is turned into the edge between the two inner ones: it runs along the crease,
+ * and none crosses it. A loop whose triangles would fold over is meshed without its crease.
+ * \param[in,out] triangles,vertices new ones are appended
+ * \return the edges of the mesh that run along creases, sorted
+ */
+std::vector<VertexPair>
+addCreases (const std::vector<CellLoop> &loops, const std::vector<MeshedLoop> &meshed,
+            std::vector<std::array<int, 3>> &triangles, SurfaceVertices &vertices);
+
+} // namespace erkpa

@@ -1,0 +1,100 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "face_map.h"
+#include "support.h"
+
+#include <vector>
+
+namespace erkpa
+{
+
+/** \brief The faces around an evaluation point that sharp surfaces keep apart there, as groups of gathered nodes.
+ *
+ * Faces that go on into each other make one group.
+ */
+class FaceGroups
+{
+public:
+  /** \param[in] faces null where the field has none */
+  explicit FaceGroups (const FaceMap *faces) : faces_ (faces) {}
+
+  /** \brief Prepare for points within \a extent of \a center; false where no faces are apart near them. */
+  bool
+  gather (const Eigen::Vector3d &center, double extent);
+
+  /** \brief Take up the value points that were gathered. */
+  void
+  assign (const Support &support);
+
+  /** \brief Group the nodes as seen from \a x; false where there are no two groups in its support.
+   * \param[in] support with the support at x selected
+   */
+  bool
+  select (const Support &support, const Eigen::Vector3d &x);
+
+  /** \brief Groups with nodes in the support, the largest number of nodes first; 2 or more. */
+  int
+  count () const
+  {
+    return static_cast<int> (groups_.size ());
+  }
+
+  /** \brief Per gathered value point, whether it is of group \a group. */
+  const std::vector<char> &
+  members (int group) const
+  {
+    return groups_[static_cast<std::size_t> (group)].members;
+  }
+
+  /** \brief The group that a face is of; -1 where it is of none. */
+  int
+  groupOf (int face) const;
+
+  /** \brief The group of a gathered value point; -1 for none. */
+  int
+  groupOfSlot (int slot) const
+  {
+    return groupOf (face_of_slot_[static_cast<std::size_t> (slot)]);
+  }
+
+  /** \brief Face of a gathered value point; -1 for none. */
+  int
+  faceOfSlot (int slot) const
+  {
+    return face_of_slot_[static_cast<std::size_t> (slot)];
+  }
+
+private:
+  struct Pair
+  {
+    int face, other;
+    double separate, joined; // distances from x
+  };
+
+  struct Group
+  {
+    int representative;
+    int nodes; // in the support
+    std::vector<char> members;
+  };
+
+  bool
+  findPairs (const Eigen::Vector3d &x);
+
+  void
+  uniteJoined ();
+
+  int
+  placeOf (int face) const;
+
+  const FaceMap *faces_;
+  std::vector<int> near_; // meetings
+  std::vector<int> face_of_slot_;
+  std::vector<int> present_;         // faces of the gathered value points, sorted
+  std::vector<int> representatives_; // of present_
+  std::vector<Pair> pairs_;
+  std::vector<Group> groups_, spare_;
+};
+
+} // namespace erkpa

@@ -1,0 +1,64 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <erkpa/neighbor_search.h>
+#include <erkpa/oriented_points.h>
+
+#include <cstddef>
+#include <vector>
+
+namespace erkpa
+{
+
+/** \brief A place where two faces are near each other. */
+struct Meeting
+{
+  Eigen::Vector3f position; ///< local frame
+  int face, other;          ///< the faces, face < other
+  int surface;              ///< the sharp surface that keeps them apart; -1 where the one goes on into the other
+  double reach;             ///< how far around the position this holds, a length
+};
+
+/** \brief Which face every node is on, and where faces are apart.
+ *
+ * Faces meet in creases and in the two sides of thin walls: there a sharp surface keeps them apart. Elsewhere
+ * neighbouring faces are parts of one smooth surface.
+ */
+class FaceMap
+{
+public:
+  /** \param[in] faces face of each node, -1 for none
+   * \param[in] separations where faces are apart; surface >= 0
+   * \param[in] spacing distance between neighbouring nodes
+   */
+  FaceMap (const OrientedPoints &points, const NeighborSearch &search, std::vector<int> faces,
+           std::vector<Meeting> separations, double spacing);
+
+  int
+  faceOf (int node) const
+  {
+    return faces_[static_cast<std::size_t> (node)];
+  }
+
+  const std::vector<Meeting> &
+  meetings () const
+  {
+    return meetings_;
+  }
+
+  /** \brief The meetings that points within \a extent of \a center may be in reach of, by their places in meetings ().
+   */
+  void
+  meetingsNear (const Eigen::Vector3d &center, double extent, std::vector<int> &near) const;
+
+private:
+  void
+  findJoints (const OrientedPoints &points, const NeighborSearch &search, double spacing);
+
+  std::vector<int> faces_;
+  std::vector<Meeting> meetings_; // separations first
+  double largest_reach_ = 0.0;
+  NeighborSearch::ConstPtr search_; // over meetings_; null where there are none
+};
+
+} // namespace erkpa

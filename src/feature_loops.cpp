@@ -1,0 +1,196 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "feature_loops.h"
+
+#include "threads.h"
+
+#include <Eigen/Geometry>
+#include <Eigen/SVD>
+
+#include <algorithm>
+#include <cmath>
+
+namespace erkpa
+{
+
+namespace
+{
+
+/** \brief Meshes the loops of one thread. */
+class LoopMesher
+{
+public:
+  LoopMesher (const ImplicitField &field, const PolygonizerOptions &options, double voxel,
+              const SurfaceVertices &vertices)
+      : options_ (options), voxel_ (voxel), vertices_ (vertices), local_ (field),
+        channels_ (static_cast<std::size_t> (field.points ().channels))
+  {
+  }
+
+  void
+  mesh (const CellLoop &loop, MeshedLoop &result)
+  {
+    Eigen::Vector3d middle = Eigen::Vector3d::Zero ();
+    for (const int v : loop.ring)
+      middle += position (v) / static_cast<double> (loop.ring.size ());
+    local_.gather (middle, REACH * voxel_);
+    findFaces (loop, result);
+    if (result.crossings.empty ())
+      return;
+    result.position = minimizeDistances (loop, middle);
+    result.has_center = solve (middle, result.position);
+    if (result.has_center)
+      describeCenter (result);
+  }
+
+  const LocalField &
+  local () const
+  {
+    return local_;
+  }
+
+private:
+  static constexpr double REACH = 2.5; // voxels that a vertex may be away from the middle of its loop
+
+  const Eigen::Vector3d &
+  position (int v) const
+  {
+    return vertices_.positions[static_cast<std::size_t> (v)];
+  }
+
+  int
+  faceOf (int v) const
+  {
+    return vertices_.faces[static_cast<std::size_t> (v)];
+  }
+
+  /** \brief Cut the loop where creases cross it; faces_ are those of the parts. */
+  void
+  findFaces (const CellLoop &loop, MeshedLoop &result)
+  {
+    faces_.clear ();
+    const std::size_t n = loop.ring.size ();
+    for (std::size_t i = 0; i < n; ++i)
+    {
+      const int a = loop.ring[i], b = loop.ring[(i + 1) % n];
+      if (faceOf (a) == faceOf (b) || !isCrease (a, b))
+        continue;
+      result.crossings.push_back (orderedPair (a, b));
+      for (const int face : {faceOf (a), faceOf (b)})
+        if (std::find (faces_.begin (), faces_.end (), face) == faces_.end ())
+          faces_.push_back (face);
+    }
+  }
+
+  /** \brief Whether the pieces of f on the faces of two vertices turn against each other between them. */
+  bool
+  isCrease (int a, int b)
+  {
+    constexpr double LEAST_TURN = 0.07; // radians, 4 degrees
+    const Eigen::Vector3d middle = 0.5 * (position (a) + position (b));
+    const LocalSample one = local_.sampleOnFace (middle, std::min (faceOf (a), faceOf (b)));
+    const LocalSample other = local_.sampleOnFace (middle, std::max (faceOf (a), faceOf (b)));
+    if (!one.isDefined () || !other.isDefined ())
+      return false;
+    return std::atan2 (one.gradient.cross (other.gradient).norm (), one.gradient.dot (other.gradient)) > LEAST_TURN;
+  }
+
+  /** \brief The point nearest to the tangent planes at the loop's vertices (Kobbelt et al. 2001). */
+  Eigen::Vector3d
+  minimizeDistances (const CellLoop &loop, const Eigen::Vector3d &middle) const
+  {
+    Eigen::Matrix<double, Eigen::Dynamic, 3> planes (loop.ring.size (), 3);
+    Eigen::VectorXd distances (loop.ring.size ());
+    for (std::size_t i = 0; i < loop.ring.size (); ++i)
+    {
+      const auto row = static_cast<Eigen::Index> (i);
+      const Eigen::Vector3d &normal = vertices_.normals[static_cast<std::size_t> (loop.ring[i])];
+      planes.row (row) = normal.transpose ();
+      distances[row] = normal.dot (position (loop.ring[i]) - middle);
+    }
+    Eigen::JacobiSVD<Eigen::Matrix<double, Eigen::Dynamic, 3>> svd (planes, Eigen::ComputeThinU | Eigen::ComputeThinV);
+    svd.setThreshold (0.1);
+    const Eigen::Vector3d step = svd.solve (distances);
+    const double length = step.norm ();
+    const double limit = 1.5 * voxel_;
+    return middle + (length > limit ? limit / length : 1.0) * step;
+  }
+
+  /** \brief Newton steps of least norm to f = iso on all faces of the loop. */
+  bool
+  solve (const Eigen::Vector3d &middle, Eigen::Vector3d &x)
+  {
+    constexpr int STEPS = 10;
+    const auto count = static_cast<Eigen::Index> (faces_.size ());
+    Eigen::Matrix<double, Eigen::Dynamic, 3> gradients (count, 3);
+    Eigen::VectorXd values (count);
+    for (int step = 0; step < STEPS; ++step)
+    {
+      for (Eigen::Index i = 0; i < count; ++i)
+      {
+        const LocalSample sample = local_.sampleOnFace (x, faces_[static_cast<std::size_t> (i)]);
+        if (!sample.isDefined ())
+          return false;
+        values[i] = options_.iso_level - sample.value;
+        gradients.row (i) = sample.gradient.transpose ();
+      }
+      Eigen::JacobiSVD<Eigen::Matrix<double, Eigen::Dynamic, 3>> svd (gradients,
+                                                                      Eigen::ComputeThinU | Eigen::ComputeThinV);
+      svd.setThreshold (0.05);
+      const Eigen::Vector3d move = svd.solve (values);
+      x += move;
+      if (!((x - middle).norm () < REACH * voxel_))
+        return false;
+      if (move.norm () < 1e-5 * voxel_)
+        return true;
+    }
+    return values.norm () < 0.1 * voxel_;
+  }
+
+  /** \brief The normal of a crease vertex is the mean of its faces' normals. */
+  void
+  describeCenter (MeshedLoop &result)
+  {
+    const LocalSample sample = local_.sample (result.position);
+    result.border_offset = sample.border_offset;
+    result.face = local_.face ();
+    result.attributes.resize (channels_);
+    if (channels_ > 0)
+      local_.blendAttributes (result.attributes.data ());
+    result.normal.setZero ();
+    for (const int face : faces_)
+    {
+      const LocalSample piece = local_.sampleOnFace (result.position, face);
+      if (piece.isDefined () && piece.gradient.norm () > 0.0)
+        result.normal += piece.gradient.normalized ();
+    }
+    if (result.normal.norm () > 0.0)
+      result.normal.normalize ();
+  }
+
+  const PolygonizerOptions &options_;
+  double voxel_;
+  const SurfaceVertices &vertices_;
+  LocalField local_;
+  std::size_t channels_;
+  std::vector<int> faces_;
+};
+
+} // namespace
+
+std::vector<MeshedLoop>
+meshLoops (const ImplicitField &field, const PolygonizerOptions &options, const std::vector<CellLoop> &loops,
+           double voxel, const SurfaceVertices &vertices, PolygonizerReport &report)
+{
+  std::vector<MeshedLoop> meshed (loops.size ());
+  parallelFor (
+      loops.size (), options.threads, [&] { return LoopMesher (field, options, voxel, vertices); },
+      [&] (LoopMesher &mesher, std::size_t i) { mesher.mesh (loops[i], meshed[i]); },
+      [&report] (const LoopMesher &mesher)
+      {
+        report.evaluations += mesher.local ().evaluations ();
+        report.support_nodes += mesher.local ().supportNodes ();
+      });
+  return meshed;
+}
+
+} // namespace erkpa

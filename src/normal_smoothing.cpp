@@ -1,0 +1,259 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "normal_smoothing.h"
+
+#include "threads.h"
+
+#include <Eigen/Cholesky>
+#include <Eigen/Eigenvalues>
+#include <Eigen/Geometry>
+
+#include <algorithm>
+#include <cmath>
+
+namespace erkpa
+{
+
+namespace
+{
+
+using Terms = Eigen::Matrix<double, 6, 1>;
+
+Terms
+termsAt (double x, double y)
+{
+  Terms terms;
+  terms << 1.0, x, y, x * x, x * y, y * y;
+  return terms;
+}
+
+double
+radians (double degrees)
+{
+  return degrees * M_PI / 180.0;
+}
+
+/** \brief Scratch memory of a neighbour query. */
+struct Query
+{
+  std::vector<int> indices;
+  std::vector<float> squared;
+};
+
+/** \brief Nodes spread over the cloud: enough for a quantile that does not depend on which they are. */
+std::vector<std::size_t>
+sampleOf (std::size_t size)
+{
+  constexpr std::size_t COUNT = 5000;
+  const std::size_t step = std::max<std::size_t> (1, size / COUNT);
+  std::vector<std::size_t> sample;
+  for (std::size_t i = 0; i < size; i += step)
+    sample.push_back (i);
+  return sample;
+}
+
+/** \brief The value that a share of the values stays below; they may be negative where unknown and then do not count. */
+double
+quantile (std::vector<double> values, double share)
+{
+  values.erase (std::remove_if (values.begin (), values.end (), [] (double v) { return !(v >= 0.0); }), values.end ());
+  if (values.empty ())
+    return 0.0;
+  const auto at = values.begin () + static_cast<std::ptrdiff_t> (share * static_cast<double> (values.size () - 1));
+  std::nth_element (values.begin (), at, values.end ());
+  return *at;
+}
+
+/** \brief Angle between the normal of node \a i and what a linear fit of its neighbours' normals says, in radians.
+ *
+ * Scaled by how uncertain that prediction is beside the normal itself; negative where it cannot be told.
+ */
+double
+normalResidual (const OrientedPoints &points, std::size_t i, double spacing, const std::vector<int> &neighbors)
+{
+  const Eigen::Vector3d normal = points.normals[i].cast<double> ();
+  Eigen::Matrix3d plane;
+  plane.col (0) = normal.unitOrthogonal ();
+  plane.col (1) = normal.cross (plane.col (0));
+  plane.col (2).setZero ();
+  Eigen::Matrix3d moments = 1e-3 * Eigen::Matrix3d::Identity (), sums = Eigen::Matrix3d::Zero ();
+  int count = 0;
+  for (const int j : neighbors)
+  {
+    const auto neighbor = static_cast<std::size_t> (j);
+    if (neighbor == i || points.normals[neighbor].dot (points.normals[i]) < 0.0f)
+      continue;
+    Eigen::Vector3d terms =
+        plane.transpose () * (points.positions[neighbor] - points.positions[i]).cast<double> () / spacing;
+    terms[2] = 1.0;
+    moments += terms * terms.transpose ();
+    sums += terms * points.normals[neighbor].cast<double> ().transpose ();
+    ++count;
+  }
+  if (count < 5)
+    return -1.0;
+  const Eigen::LDLT<Eigen::Matrix3d> solver (moments);
+  const Eigen::Vector3d weights = solver.solve (Eigen::Vector3d::UnitZ ());
+  const Eigen::Vector3d predicted = sums.transpose () * weights;
+  const double angle = std::atan2 (predicted.cross (normal).norm (), predicted.dot (normal));
+  return angle / std::sqrt (1.0 + std::max (0.0, weights[2]));
+}
+
+} // namespace
+
+HeightFit::HeightFit (const std::vector<Eigen::Vector3f> &points, const std::vector<float> &weights,
+                      const Eigen::Vector3f &side, double spacing, double noise, bool curved)
+{
+  setFrame (points, weights, side);
+  const double bend = 0.15; // expected second derivative, in 1 / spacing
+  const double ridge = std::pow (noise / (bend * spacing), 2) + 1e-6;
+  Eigen::Matrix<double, 6, 6> moments = Eigen::Matrix<double, 6, 6>::Zero ();
+  Terms sums = Terms::Zero ();
+  double total = 0.0, squares = 0.0, used = 0.0;
+  for (std::size_t i = 0; i < points.size (); ++i)
+  {
+    if (!(weights[i] > 0.0f))
+      continue;
+    const Eigen::Vector3d p = (frame_ * (points[i] - center_)).cast<double> () / spacing;
+    const Terms terms = termsAt (p.x (), p.y ());
+    moments.selfadjointView<Eigen::Lower> ().rankUpdate (terms, weights[i]);
+    sums += weights[i] * p.z () * terms;
+    squares += weights[i] * p.z () * p.z ();
+    used += 1.0;
+  }
+  total = moments (0, 0);
+  for (int j = 0; j < 6; ++j)
+    moments (j, j) += j < 3 ? 1e-9 * total : ridge;
+  Terms heights = Terms::Zero ();
+  if (curved)
+    heights = moments.selfadjointView<Eigen::Lower> ().ldlt ().solve (sums);
+  else
+    heights.head<3> () = moments.topLeftCorner<3, 3> ().selfadjointView<Eigen::Lower> ().ldlt ().solve (sums.head<3> ());
+  const double left = squares - 2.0 * heights.dot (sums) +
+                      heights.dot (moments.selfadjointView<Eigen::Lower> () * heights) -
+                      ridge * heights.tail<3> ().squaredNorm ();
+  const double freedom = std::max (0.5, used - (curved ? 6.0 : 3.0)) * total / std::max (1.0, used);
+  deviation_ = static_cast<float> (spacing * std::sqrt (std::max (0.0, left / freedom)));
+  weight_ = static_cast<float> (total);
+  const double scale = spacing;
+  heights[0] *= scale;
+  heights.tail<3> () /= scale;
+  heights_ = heights.cast<float> ();
+}
+
+void
+HeightFit::setFrame (const std::vector<Eigen::Vector3f> &points, const std::vector<float> &weights,
+                     const Eigen::Vector3f &side)
+{
+  Eigen::Vector3d mean = Eigen::Vector3d::Zero ();
+  Eigen::Matrix3d products = Eigen::Matrix3d::Zero ();
+  double total = 0.0;
+  const Eigen::Vector3f &first = points.front ();
+  for (std::size_t i = 0; i < points.size (); ++i)
+  {
+    const Eigen::Vector3d p = (points[i] - first).cast<double> ();
+    total += weights[i];
+    mean += weights[i] * p;
+    products += weights[i] * p * p.transpose ();
+  }
+  mean /= total;
+  Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver;
+  solver.computeDirect (products / total - mean * mean.transpose ());
+  Eigen::Vector3f z = solver.eigenvectors ().col (0).cast<float> ().normalized ();
+  if (!z.allFinite ())
+    z = side;
+  if (z.dot (side) < 0.0f)
+    z = -z;
+  center_ = first + mean.cast<float> ();
+  frame_.row (2) = z.transpose ();
+  frame_.row (0) = z.unitOrthogonal ().transpose ();
+  frame_.row (1) = z.cross (z.unitOrthogonal ()).transpose ();
+}
+
+double
+HeightFit::distance (const Eigen::Vector3f &x) const
+{
+  const Eigen::Vector3f p = frame_ * (x - center_);
+  const Eigen::Vector3f &c = heights_.tail<3> ();
+  const float height = heights_[0] + heights_[1] * p.x () + heights_[2] * p.y () + c[0] * p.x () * p.x () +
+                       c[1] * p.x () * p.y () + c[2] * p.y () * p.y ();
+  return (p.z () - height) * normal (x).dot (frame_.row (2).transpose ());
+}
+
+Eigen::Vector3f
+HeightFit::normal (const Eigen::Vector3f &x) const
+{
+  const Eigen::Vector3f p = frame_ * (x - center_);
+  const float slope_x = heights_[1] + 2.0f * heights_[3] * p.x () + heights_[4] * p.y ();
+  const float slope_y = heights_[2] + heights_[4] * p.x () + 2.0f * heights_[5] * p.y ();
+  return frame_.transpose () * Eigen::Vector3f (-slope_x, -slope_y, 1.0f).normalized ();
+}
+
+void
+smoothNormals (const NeighborSearch &search, double spacing, int passes, int neighbors, double sigma_degrees,
+               int threads, OrientedPoints &points)
+{
+  const double by_distance = -0.5 / std::pow (1.5 * spacing, 2), by_angle = -0.5 / std::pow (radians (sigma_degrees), 2);
+  for (int pass = 0; pass < passes; ++pass)
+  {
+    std::vector<Eigen::Vector3f> smoothed (points.size ());
+    parallelFor (points.size (), threads, [] { return Query (); },
+                 [&] (Query &query, std::size_t i)
+                 {
+                   search.nearestK (points.positions[i], neighbors, query.indices, query.squared);
+                   Eigen::Vector3d sum = Eigen::Vector3d::Zero ();
+                   for (std::size_t j = 0; j < query.indices.size (); ++j)
+                   {
+                     const Eigen::Vector3f &normal = points.normals[static_cast<std::size_t> (query.indices[j])];
+                     const double angle = std::acos (std::clamp (points.normals[i].dot (normal), -1.0f, 1.0f));
+                     sum += std::exp (by_distance * query.squared[j] + by_angle * angle * angle) *
+                            normal.cast<double> ();
+                   }
+                   smoothed[i] = sum.norm () > 0.0 ? Eigen::Vector3f (sum.normalized ().cast<float> ())
+                                                   : points.normals[i];
+                 });
+    points.normals.swap (smoothed);
+  }
+}
+
+double
+normalNoise (const NeighborSearch &search, double spacing, int threads, const OrientedPoints &points)
+{
+  constexpr int NEIGHBORS = 10;
+  constexpr double MEDIAN = 0.8326; // of the angle, where its root mean square is 1: sqrt (ln 2)
+  const std::vector<std::size_t> sample = sampleOf (points.size ());
+  std::vector<double> angles (sample.size ());
+  parallelFor (sample.size (), threads, [] { return Query (); },
+               [&] (Query &query, std::size_t s)
+               {
+                 search.nearestK (points.positions[sample[s]], NEIGHBORS, query.indices, query.squared);
+                 angles[s] = normalResidual (points, sample[s], spacing, query.indices);
+               });
+  return quantile (angles, 0.5) / MEDIAN * 180.0 / M_PI;
+}
+
+double
+positionNoise (const NeighborSearch &search, double spacing, int threads, const OrientedPoints &points)
+{
+  constexpr int NEIGHBORS = 18;
+  constexpr double SHARE = 0.3, EXPECTED = 0.88; // quantile of the deviation's estimate with 12 degrees of freedom
+  const std::vector<std::size_t> sample = sampleOf (points.size ());
+  std::vector<double> deviations (sample.size ());
+  parallelFor (sample.size (), threads, [] { return Query (); },
+               [&] (Query &query, std::size_t s)
+               {
+                 const Eigen::Vector3f &normal = points.normals[sample[s]];
+                 search.nearestK (points.positions[sample[s]], NEIGHBORS, query.indices, query.squared);
+                 std::vector<Eigen::Vector3f> near;
+                 for (const int j : query.indices)
+                   if (normal.dot (points.normals[static_cast<std::size_t> (j)]) > -0.3f)
+                     near.push_back (points.positions[static_cast<std::size_t> (j)]);
+                 if (static_cast<int> (near.size ()) < NEIGHBORS - 4)
+                   deviations[s] = -1.0;
+                 else
+                   deviations[s] =
+                       HeightFit (near, std::vector<float> (near.size (), 1.0f), normal, spacing, 0.0, true).deviation ();
+               });
+  return quantile (deviations, SHARE) / EXPECTED;
+}
+
+} // namespace erkpa

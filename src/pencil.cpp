@@ -1,0 +1,67 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "pencil.h"
+
+#include <Eigen/LU>
+#include <Eigen/SVD>
+
+#include <cmath>
+#include <cstddef>
+
+namespace erkpa
+{
+
+namespace
+{
+
+/** \brief The pencil of three planes, if they make one: α θ_a + β θ_b + γ θ_c = 0 with no factor near zero. */
+bool
+pencilOf (const std::array<const SharpPlane *, 3> &planes, double tolerance, Pencil &pencil)
+{
+  Eigen::Matrix<double, 3, 3> normals;
+  const Eigen::Vector3d zero = Eigen::Vector3d::Zero ();
+  for (int i = 0; i < 3; ++i)
+    normals.col (i) = planes[static_cast<std::size_t> (i)]->thetaGradient (zero);
+  constexpr double PARALLEL = 0.05; // about 3 degrees: planes found by segmentation are not exact
+  if (std::abs (normals.determinant ()) > 1.5 * PARALLEL)
+    return false; // the smallest singular value is larger than PARALLEL: the other two make at most 1.5
+  const Eigen::JacobiSVD<Eigen::Matrix3d> svd (normals, Eigen::ComputeFullV);
+  if (svd.singularValues ()[2] > PARALLEL || svd.singularValues ()[1] < PARALLEL)
+    return false;
+  const Eigen::Vector3d factors = svd.matrixV ().col (2);
+  // A point on two of the planes: there the third must vanish too, else the three bound a prism.
+  const Eigen::Vector3d offsets (planes[0]->theta (zero), planes[1]->theta (zero), planes[2]->theta (zero));
+  if (std::abs (factors.dot (offsets)) > tolerance)
+    return false;
+  if (factors.cwiseAbs ().minCoeff () < 0.1)
+    return false;
+  pencil.scale_a = factors[0];
+  pencil.scale_b = -factors[1];
+  return true;
+}
+
+} // namespace
+
+std::vector<Pencil>
+findPencils (const std::vector<SharpSurface::ConstPtr> &surfaces, double tolerance)
+{
+  std::vector<const SharpPlane *> planes (surfaces.size ());
+  std::vector<const SpaceWarp *> warps (surfaces.size ());
+  for (std::size_t i = 0; i < surfaces.size (); ++i)
+    planes[i] = planeBehind (*surfaces[i], &warps[i]);
+  std::vector<Pencil> pencils;
+  const int n = static_cast<int> (surfaces.size ());
+  const auto plane = [&] (int i) { return planes[static_cast<std::size_t> (i)]; };
+  const auto warp = [&] (int i) { return warps[static_cast<std::size_t> (i)]; };
+  for (int a = 0; a < n; ++a)
+    for (int b = a + 1; b < n; ++b)
+      for (int c = b + 1; c < n; ++c)
+      {
+        Pencil pencil{{a, b, c}, 0.0, 0.0};
+        if (plane (a) && plane (b) && plane (c) && warp (a) == warp (b) && warp (b) == warp (c) &&
+            pencilOf ({plane (a), plane (b), plane (c)}, tolerance, pencil))
+          pencils.push_back (pencil);
+      }
+  return pencils;
+}
+
+} // namespace erkpa
