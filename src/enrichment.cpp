@@ -25,18 +25,29 @@ smoothStepSlope (double t)
   return t >= 1.0 ? 0.0 : 6.0 * t * (1.0 - t);
 }
 
+/** \brief Whether θ is a field of its own, behind whatever it is. */
+bool
+isCostly (const SharpSurface &surface)
+{
+  const SharpSurfaceParts parts = surface.parts ();
+  return parts.kind == SharpSurfaceParts::Kind::POINTS || (parts.surface && isCostly (*parts.surface)) ||
+         (parts.other && isCostly (*parts.other));
+}
+
 } // namespace
 
 Enrichment::Enrichment (const ImplicitField &field)
     : field_ (field), jumps_ (field.options ().enrichment == EnrichmentType::JUMP)
 {
   const Order order = field.options ().order;
+  known_.resize (field.options ().sharp_surfaces.size ());
   const bool squares = !jumps_ && field.options ().constraint == Constraint::HERMITE;
   for (const SharpSurface::ConstPtr &surface : field.options ().sharp_surfaces)
   {
     const SpaceWarp *warp = nullptr;
     const bool is_linear = planeBehind (*surface, &warp) != nullptr && warp == nullptr;
     const bool is_square_in_basis = is_linear && order == Order::QUADRATIC;
+    costly_.push_back (isCostly (*surface) ? 1 : 0);
     reversible_.push_back (jumps_ || (is_linear && order != Order::CONSTANT) ? 1 : 0);
     squared_.push_back (squares && order != Order::CONSTANT && !is_square_in_basis ? 1 : 0);
   }
@@ -76,19 +87,32 @@ Enrichment::evaluateThetas (const Support &support, int surface)
   NearSurface &near = near_[near_count_];
   near.surface = surface;
   near.at_nodes.clear ();
+  const bool is_costly = costly_[static_cast<std::size_t> (surface)] != 0;
   bool below = false, above = false;
   for (std::size_t slot = 0; slot < slots; ++slot)
   {
-    const double theta = sharp.theta (position (slot));
-    near.at_nodes.push_back ({theta, Eigen::Vector3d::Zero ()});
-    below = below || theta < 0.0;
-    above = above || theta > 0.0;
+    near.at_nodes.push_back (is_costly ? knownTheta (support, surface, slot)
+                                       : Theta{sharp.theta (position (slot)), Eigen::Vector3d::Zero ()});
+    below = below || near.at_nodes.back ().value < 0.0;
+    above = above || near.at_nodes.back ().value > 0.0;
   }
   if (!below || !above)
     return;
-  for (std::size_t slot = 0; slot < slots; ++slot)
+  for (std::size_t slot = 0; slot < slots && !is_costly; ++slot)
     near.at_nodes[slot].gradient = sharp.thetaGradient (position (slot));
   ++near_count_;
+}
+
+const Enrichment::Theta &
+Enrichment::knownTheta (const Support &support, int surface, std::size_t slot)
+{
+  const auto i = static_cast<std::size_t> (surface);
+  const ValuePoint &point = support.points ()[slot];
+  const auto [known, is_new] = known_[i].try_emplace (field_.valueIndex (point.node, point.side));
+  if (is_new)
+    field_.options ().sharp_surfaces[i]->evaluate (support.position (slot) + field_.points ().origin,
+                                                   known->second.value, known->second.gradient);
+  return known->second;
 }
 
 int
@@ -144,7 +168,7 @@ Enrichment::activate (NearSurface &near, const Support &support)
   near.presence = surface.presence (position_, support.radius ());
   near.active = near.presence > MIN_PRESENCE;
   if (near.active)
-    near.at_point = {surface.theta (position_), surface.thetaGradient (position_)};
+    surface.evaluate (position_, near.at_point.value, near.at_point.gradient);
 }
 
 double

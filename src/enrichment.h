@@ -5,6 +5,7 @@
 #include "support.h"
 
 #include <cstddef>
+#include <unordered_map>
 #include <vector>
 
 namespace erkpa
@@ -114,6 +115,10 @@ private:
   void
   evaluateThetas (const Support &support, int surface);
 
+  /** \brief θ and ∇θ of a costly surface at a value point: asked for once, then kept. */
+  const Theta &
+  knownTheta (const Support &support, int surface, std::size_t slot);
+
   /** \brief Weigh the support's nodes on either side of a near surface, and decide whether it is active. */
   void
   activate (NearSurface &near, const Support &support);
@@ -156,8 +161,10 @@ private:
 
   const ImplicitField &field_;
   bool jumps_;
-  std::vector<char> reversible_; // per sharp surface: see isReversible ()
-  std::vector<char> squared_;    // per sharp surface: whether its kink comes with θ²
+  std::vector<char> reversible_;                              // per sharp surface: see isReversible ()
+  std::vector<char> squared_;                                 // per sharp surface: whether its kink comes with θ²
+  std::vector<char> costly_;                                  // per sharp surface: whether known_ keeps its θ
+  std::vector<std::unordered_map<std::size_t, Theta>> known_; // per sharp surface, by value index
   std::vector<Pencil> near_pencils_;
   std::vector<NearSurface> near_;
   std::size_t near_count_ = 0; // near_ keeps its memory from ball to ball

@@ -100,9 +100,12 @@ FaceGroups::select (const Support &support, const Eigen::Vector3d &x)
   if (near_.empty () || !findPairs (x))
     return false;
   uniteJoined ();
-  for (const SupportNode &node : support.nodes ())
+  const double reach = REACH * support.radius ();
+  for (std::size_t slot = 0; slot < face_of_slot_.size (); ++slot)
   {
-    const int place = placeOf (faceOfSlot (node.slot));
+    if (support.squaredDistance (slot) > reach * reach)
+      continue;
+    const int place = placeOf (face_of_slot_[slot]);
     if (place < 0)
       continue;
     const int representative = representatives_[static_cast<std::size_t> (place)];

@@ -33,7 +33,11 @@ public:
   bool
   select (const Support &support, const Eigen::Vector3d &x);
 
-  /** \brief Groups with nodes in the support, the largest number of nodes first; 2 or more. */
+  /** \brief How far from x the nodes of groups count, in support radii: thin samples of narrow faces shall not be
+   * missed. */
+  static constexpr double REACH = 1.5;
+
+  /** \brief Groups with nodes in reach, the largest number of nodes first; 2 or more. */
   int
   count () const
   {

@@ -2,6 +2,7 @@
 #include "face_map.h"
 
 #include <algorithm>
+#include <cmath>
 #include <map>
 #include <utility>
 
@@ -54,7 +55,9 @@ FaceMap::findJoints (const OrientedPoints &points, const NeighborSearch &search,
     {
       const int face = faces_[i], other = faces_[static_cast<std::size_t> (j)];
       const float turn = points.normals[i].dot (points.normals[static_cast<std::size_t> (j)]);
-      if (j <= static_cast<int> (i) || other < 0 || face == other || turn < LEAST_COSINE)
+      if (j <= static_cast<int> (i) || other < 0 || face == other)
+        continue;
+      if (turn < LEAST_COSINE)
         continue;
       const Eigen::Vector3f middle = 0.5f * (points.positions[i] + points.positions[static_cast<std::size_t> (j)]);
       meetingsNear (middle.cast<double> (), 0.0, near);

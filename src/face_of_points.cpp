@@ -22,15 +22,21 @@ public:
   double
   theta (const Eigen::Vector3d &x) const override
   {
-    const double theta = field ().value (x);
-    return theta == theta ? theta : sampleTangentPlane (x).value;
+    return sample (x).value;
   }
 
   Eigen::Vector3d
   thetaGradient (const Eigen::Vector3d &x) const override
   {
-    const FieldSample sample = field ().sample (x);
-    return sample.isDefined () ? sample.gradient : sampleTangentPlane (x).gradient;
+    return sample (x).gradient;
+  }
+
+  void
+  evaluate (const Eigen::Vector3d &x, double &theta, Eigen::Vector3d &gradient) const override
+  {
+    const FieldSample both = sample (x);
+    theta = both.value;
+    gradient = both.gradient;
   }
 
   SharpSurfaceParts
@@ -48,6 +54,13 @@ private:
   {
     std::call_once (built_, [this] { build (); });
     return *field_;
+  }
+
+  FieldSample
+  sample (const Eigen::Vector3d &x) const
+  {
+    const FieldSample sample = field ().sample (x);
+    return sample.isDefined () ? sample : sampleTangentPlane (x);
   }
 
   void

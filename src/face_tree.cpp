@@ -79,6 +79,22 @@ FaceTree::winner (const double *values) const
   return best[static_cast<std::size_t> (last)];
 }
 
+bool
+FaceTree::takesLarger (int face, int other) const
+{
+  std::array<unsigned, MAX_FACES> taken{1, 2, 4, 8};
+  const unsigned both = 1u << face | 1u << other;
+  for (int s = 0; s + 1 < faces; ++s)
+  {
+    const Step &step = steps[static_cast<std::size_t> (s)];
+    unsigned &mine = taken[static_cast<std::size_t> (step.face)];
+    mine |= taken[static_cast<std::size_t> (step.other)];
+    if ((mine & both) == both)
+      return step.larger;
+  }
+  return true;
+}
+
 const std::vector<FaceTree> &
 treesOf (int faces)
 {

@@ -25,6 +25,10 @@ struct FaceTree
   /** \brief The face whose value is that of the whole. */
   int
   winner (const double *values) const;
+
+  /** \brief Whether it is the larger of two faces that counts, where they meet. */
+  bool
+  takesLarger (int face, int other) const;
 };
 
 /** \brief All trees over a number of faces (1 .. MAX_FACES), each once. */

@@ -82,6 +82,14 @@ public:
     return result - gradientOfRaises (c) - turnOfRaises (shape_, c) - turnOfRaises (c, shape_);
   }
 
+  /** \brief The gradient at x of the fitted combination, its coefficients held. */
+  Eigen::Vector3d
+  slope ()
+  {
+    evaluateTermsAtCenter ();
+    return G_.transpose () * system_.solve (system_.rhs ());
+  }
+
   /** \brief What the fit says at a gathered value point, u = (x_i - x) / ε. */
   double
   heightAt (int slot, const Eigen::Vector3d &u)

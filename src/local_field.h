@@ -58,6 +58,22 @@ public:
   std::vector<ShapeFunction>
   shapeFunctions (const Eigen::Vector3d &x);
 
+  /** \brief From now on give f as if walls and gaps between faces were at least so thick (a length before the warp).
+   *
+   * A grid then sees both sides of the thinnest wall. Vertices found so belong on the piece of f of their face. */
+  void
+  thicken (double least_wall)
+  {
+    least_wall_ = least_wall;
+  }
+
+  /** \brief How much a wall was thickened on either side at the point last evaluated. */
+  double
+  thickening () const
+  {
+    return thickening_;
+  }
+
   /** \brief The face whose piece of f held at the point last evaluated; -1 where the field has no faces. */
   int
   face () const
@@ -117,8 +133,11 @@ private:
   bool
   evaluateFaces (const Eigen::Vector3d &x, Task task);
 
-  std::size_t
-  electFace () const;
+  const FaceTree &
+  electTree () const;
+
+  double
+  thickeningAt (const FaceTree &tree, std::size_t winner) const;
 
   bool
   fitSelected (const Eigen::Vector3d &x, Task task);
@@ -157,10 +176,19 @@ private:
   Eigen::Vector3d guess_ = Eigen::Vector3d::Zero ();         // unwarped
   Eigen::Matrix3d unwarping_ = Eigen::Matrix3d::Identity (); // Jacobian of warp^-1 at the point last evaluated
   FaceGroups groups_;
-  std::vector<SupportNode> ballot_;  // the nodes that say how faces combine
+  struct Vote
+  {
+    int slot;
+    Eigen::Vector3d u;
+    double weight;
+  };
+
+  std::vector<Vote> ballot_; // of the nodes that say how faces combine
   double ballot_radius_ = 0.0;
   std::vector<int> pieces_;          // the groups that have a fit at the point last evaluated
   std::vector<double> values_;       // of the pieces
+  std::vector<Eigen::Vector3d> slopes_;
+  double least_wall_ = 0.0, thickening_ = 0.0;
   std::vector<double> heights_;      // piece after piece, of the ballot
   int face_ = -1;
   FieldSample result_;

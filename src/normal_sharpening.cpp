@@ -4,9 +4,11 @@
 #include "normal_smoothing.h"
 #include "threads.h"
 
+#include <Eigen/Geometry>
+
 #include <algorithm>
 #include <cmath>
-#include <cstdlib>
+#include <utility>
 
 namespace erkpa
 {
@@ -14,196 +16,247 @@ namespace erkpa
 namespace
 {
 
-double env (const char *n, double d) { const char *v = std::getenv (n); return v ? std::atof (v) : d; }
+constexpr std::size_t FEWEST = 6;         // points of a plane
+constexpr std::size_t FOR_A_QUADRIC = 10; // points: its six terms leave enough to tell whether it fits
 
-struct Scratch
+/** \brief The neighbours of a point that may share a face with it, nearest first, with weights for a fit. */
+struct Neighborhood
 {
-  std::vector<int> indices;
-  std::vector<float> squared;
-  std::vector<std::pair<float, int>> order;
-  std::vector<Eigen::Vector3f> points;
   std::vector<int> nodes;
+  std::vector<Eigen::Vector3f> positions;
   std::vector<float> weights;
+
+  // of the query
+  std::vector<int> indices;
+  std::vector<float> squared_distances;
+  std::vector<std::pair<float, int>> order;
 };
+
+double
+angleBetween (const Eigen::Vector3f &a, const Eigen::Vector3f &b)
+{
+  return std::atan2 (a.cross (b).norm (), a.dot (b));
+}
 
 class Sharpener
 {
 public:
   Sharpener (const NeighborSearch &search, double spacing, int k, int threads, const OrientedPoints &points)
-      : search_ (search), points_ (points), spacing_ (spacing), k_ (k), threads_ (threads),
-        noise_ (positionNoise (search, spacing, threads, points)), floor_ (noise_ + env ("FLOOR", 0.01) * spacing)
+      : search_ (search), spacing_ (spacing), threads_ (threads), points_ (points)
   {
+    const double noise = positionNoise (search, spacing, threads, points);
+    tolerance_ = noise + 0.01 * spacing;
+    k_ = static_cast<int> (k * (1.0 + std::min (0.5, 5.0 * noise / spacing)));
   }
 
-  void
-  run (std::vector<Eigen::Vector3f> &normals)
+  /** \brief The new normals. */
+  std::vector<Eigen::Vector3f>
+  run ()
   {
-    k_ = k_ * (1.0 + std::min (env ("KM", 0.5), env ("KN", 5) * noise_ / spacing_));
-    const std::size_t n = points_.size ();
-    fits_.resize (n);
-    smooth_.assign (n, 0);
-    normals = points_.normals;
-    parallelFor (n, threads_, [] { return Scratch (); }, [&] (Scratch &s, std::size_t i) { fitNode (s, i); });
-    refined_ = fits_;
-    parallelFor (n, threads_, [] { return Scratch (); }, [&] (Scratch &s, std::size_t i) { choose (s, i); });
-    const int passes = env ("PASSES", 2);
-    for (std::size_t i = 0; i < n; ++i)
-      normals[i] = refined_[i].normal (points_.positions[i]);
-    for (int p = 0; p < passes; ++p)
+    fits_.assign (points_.size (), HeightFit ());
+    smooth_.assign (points_.size (), 1);
+    forEachPoint ([this] (Neighborhood &near, std::size_t i) { fitAround (near, i); });
+    chosen_ = fits_;
+    forEachPoint ([this] (Neighborhood &near, std::size_t i) { choose (near, i); });
+    takeNormals ();
+    constexpr int ROUNDS = 2;
+    for (int round = 0; round < ROUNDS; ++round)
     {
-      now_ = normals;
-      parallelFor (n, threads_, [] { return Scratch (); }, [&] (Scratch &s, std::size_t i) { agree (s, i); });
-      for (std::size_t i = 0; i < n; ++i)
-        normals[i] = refined_[i].normal (points_.positions[i]);
+      forEachPoint ([this] (Neighborhood &near, std::size_t i) { refine (near, i, true); });
+      takeNormals ();
     }
+    return normals_;
   }
 
-  std::vector<char> smooth_;
+  /** \brief After run(): how far the given normal of a point leans to the other face of an edge it is close to.
+   *
+   * As a share of the angle between the faces; negative if it leans away. Zero and \a known false far from edges.
+   */
+  double
+  leanOf (Neighborhood &near, std::size_t i, bool &known) const
+  {
+    constexpr int CLOSE = 6;
+    constexpr double SHARP = 0.5; // radians
+    gather (near, i, CLOSE);
+    double sharpest = SHARP, lean = 0.0;
+    known = false;
+    for (const int j : near.nodes)
+    {
+      const Eigen::Vector3f &own = normals_[i], &other = normals_[static_cast<std::size_t> (j)];
+      const double angle = angleBetween (own, other);
+      if (smooth_[i] || !(angle > sharpest))
+        continue;
+      const Eigen::Vector3f to_other = (other - own.dot (other) * own).normalized ();
+      const Eigen::Vector3f &given = points_.normals[i];
+      lean = std::atan2 (given.dot (to_other), given.dot (own)) / angle;
+      sharpest = angle;
+      known = true;
+    }
+    return lean;
+  }
+
+  template <typename WorkT>
+  void
+  forEachPoint (WorkT work)
+  {
+    parallelFor (
+        points_.size (), threads_, [] { return Neighborhood (); }, work);
+  }
 
 private:
-  /** \brief Neighbours sorted by distance whose normals are not opposite. */
   void
-  gather (Scratch &s, std::size_t i, int k) const
+  gather (Neighborhood &near, std::size_t i, int k) const
   {
-    search_.nearestK (points_.positions[i], k, s.indices, s.squared);
-    s.order.clear ();
-    for (std::size_t j = 0; j < s.indices.size (); ++j)
-      s.order.emplace_back (s.squared[j], s.indices[j]);
-    std::sort (s.order.begin (), s.order.end ());
-    s.points.clear ();
-    s.nodes.clear ();
-    for (const auto &[d, j] : s.order)
-      if (points_.normals[std::size_t (j)].dot (points_.normals[i]) > -0.3f)
-      {
-        s.points.push_back (points_.positions[std::size_t (j)]);
-        s.nodes.push_back (j);
-      }
-    s.weights.assign (s.points.size (), 1.0f);
-  }
-
-  double cost (double deviation) const { return std::max (deviation, floor_); }
-
-  void
-  fitNode (Scratch &s, std::size_t i)
-  {
-    gather (s, i, k_);
-    if (s.points.size () < 6) { fits_[i] = HeightFit (s.points, s.weights, points_.normals[i], spacing_, floor_, false); smooth_[i] = 1; return; }
-    const Eigen::Vector3f &side = points_.normals[i];
-    fits_[i] = HeightFit (s.points, s.weights, side, spacing_, floor_, s.points.size () > 9);
-    smooth_[i] = fits_[i].deviation () < env ("SMOOTH", 1.5) * floor_;
-    if (smooth_[i])
-      return;
-    for (const double share : {env ("SH1", 0.6), env ("SH2", 0.4)})
+    constexpr float OPPOSITE = -0.3f; // cosine: the other side of a thin plate, even if smeared over its rim
+    search_.nearestK (points_.positions[i], k, near.indices, near.squared_distances);
+    near.order.clear ();
+    for (std::size_t j = 0; j < near.indices.size (); ++j)
+      near.order.emplace_back (near.squared_distances[j], near.indices[j]);
+    std::sort (near.order.begin (), near.order.end ());
+    near.nodes.clear ();
+    near.positions.clear ();
+    for (const auto &[squared_distance, j] : near.order)
     {
-      const std::size_t count = std::size_t (share * k_);
-      if (s.points.size () <= count)
+      const auto node = static_cast<std::size_t> (j);
+      if (points_.normals[node].dot (points_.normals[i]) < OPPOSITE)
         continue;
-      std::vector<Eigen::Vector3f> p (s.points.begin (), s.points.begin () + count);
-      std::vector<float> w (count, 1.0f);
-      for (bool curved : {true, false})
+      near.nodes.push_back (j);
+      near.positions.push_back (points_.positions[node]);
+    }
+    near.weights.assign (near.nodes.size (), 1.0f);
+  }
+
+  /** \brief Below the tolerance one deviation is as good as the other. */
+  double
+  atLeastTolerance (double deviation) const
+  {
+    return std::max (tolerance_, std::abs (deviation));
+  }
+
+  /** \brief The fit of a point's neighbours: of all of them where that is a smooth surface, else of fewer if better. */
+  void
+  fitAround (Neighborhood &near, std::size_t i)
+  {
+    gather (near, i, k_);
+    const std::size_t count = near.nodes.size ();
+    if (count < FEWEST)
+      return; // keeps its normal
+    const Eigen::Vector3f &side = points_.normals[i];
+    HeightFit &best = fits_[i];
+    best = HeightFit (near.positions, near.weights, side, spacing_, tolerance_, count >= FOR_A_QUADRIC);
+    smooth_[i] = best.deviation () < 1.1 * tolerance_;
+    for (const double share : {0.6, 0.4})
+    {
+      const auto fewer = static_cast<std::size_t> (share * k_);
+      if (smooth_[i] || fewer < FEWEST || fewer >= near.nodes.size ())
+        continue;
+      near.positions.resize (fewer);
+      near.weights.assign (fewer, 1.0f);
+      near.nodes.resize (fewer);
+      for (const bool curved : {true, false})
       {
-        if (curved && count < 12) continue;
-        const HeightFit f (p, w, side, spacing_, floor_, curved);
-        if (cost (f.deviation ()) < env ("PREF", 0.8) * cost (fits_[i].deviation ()))
-          fits_[i] = f;
+        if (curved && fewer < FOR_A_QUADRIC + 2)
+          continue;
+        const HeightFit fit (near.positions, near.weights, side, spacing_, tolerance_, curved);
+        if (atLeastTolerance (fit.deviation ()) < 0.8 * atLeastTolerance (best.deviation ()))
+          best = fit;
       }
     }
   }
 
+  /** \brief Of the fits around a point that is not on a smooth surface, the one that explains it best. */
   void
-  choose (Scratch &s, std::size_t i)
+  choose (Neighborhood &near, std::size_t i)
   {
     if (smooth_[i])
       return;
-    gather (s, i, k_ * env ("K1", 1));
-    double best = 1e300;
+    gather (near, i, k_ + k_ / 2);
     const Eigen::Vector3f &x = points_.positions[i];
-    for (const int j : s.nodes)
+    double least = HUGE_VAL;
+    for (const int j : near.nodes)
     {
-      const HeightFit &f = fits_[std::size_t (j)];
-      const double e = cost (f.deviation ()), d = cost (std::abs (f.distance (x)));
-      const double reach = (x - f.center ()).squaredNorm () / (spacing_ * spacing_);
-      double m = 0.0;
-      if (env ("MSAC", 0) > 0)
-      {
-        const double sg = 2.0 * floor_;
-        double ws = 0;
-        for (std::size_t l = 0; l < s.points.size (); ++l)
-        {
-          const double q = f.distance (s.points[l]) / sg;
-          const double w = std::exp (-0.5 * (s.points[l] - x).squaredNorm () / std::pow (env ("MW", 1.5) * spacing_, 2));
-          m += w * std::min (1.0, q * q);
-          ws += w;
-        }
-        m *= env ("MSAC", 0) * floor_ * floor_ / ws;
-      }
-      const double c = (e * e + d * d + m) * (1.0 + env ("REACH", 0.1) * reach) * (1.0 + env ("W", 4) / f.weight ());
-      if (c < best)
-      {
-        best = c;
-        refined_[i] = f;
-      }
+      const HeightFit &fit = fits_[static_cast<std::size_t> (j)];
+      if (!(fit.weight () > 0.0))
+        continue;
+      const double deviation = atLeastTolerance (fit.deviation ()), distance = atLeastTolerance (fit.distance (x));
+      const double reach = (x - fit.center ()).squaredNorm () / (spacing_ * spacing_);
+      // The last two factors decide between equals: the closer one, and the one over more points.
+      const double misfit =
+          (deviation * deviation + distance * distance) * (1.0 + 0.01 * reach) * (1.0 + 10.0 / fit.weight ());
+      if (misfit < least)
+        chosen_[i] = fit;
+      least = std::min (least, misfit);
     }
-    refine (s, i, false);
+    refine (near, i, false);
   }
 
+  /** \brief Fits the chosen surface again, to the neighbours on it. */
   void
-  refine (Scratch &s, std::size_t i, bool normals)
+  refine (Neighborhood &near, std::size_t i, bool by_normals)
   {
-    const Eigen::Vector3f &x = points_.positions[i];
-    for (int it = 0; it < int (env ("IT", 3)); ++it)
-    {
-      const HeightFit &f = refined_[i];
-      const double sigma = env ("SG", 2.0) * cost (f.deviation ());
-      float total = 0.0f;
-      for (std::size_t j = 0; j < s.nodes.size (); ++j)
-      {
-        const double d = f.distance (s.points[j]) / sigma;
-        double e = d * d;
-        if (normals)
-        {
-          const Eigen::Vector3f n = f.normal (s.points[j]);
-          e += (n - now_[std::size_t (s.nodes[j])]).squaredNorm () / std::pow (env ("NS", 0.25), 2);
-        }
-        s.weights[j] = std::exp (-0.5 * e);
-        if (s.weights[j] < 0.01f) s.weights[j] = 0;
-        total += s.weights[j];
-      }
-      int used = 0;
-      for (float w : s.weights) used += w > 0.3f;
-      if (used < 6) return;
-      const HeightFit g (s.points, s.weights, f.normal (x), spacing_, floor_, used >= 10);
-      if (std::abs (g.distance (x)) > 3.0 * cost (g.deviation ())) return;
-      if (cost (g.deviation ()) > 1.2 * cost (f.deviation ())) return;
-      refined_[i] = g;
-    }
-  }
-
-  void
-  agree (Scratch &s, std::size_t i)
-  {
+    constexpr int TURNS = 2;
     if (smooth_[i])
       return;
-    gather (s, i, k_ * env ("K2", 1));
-    double best = 1e300;
+    gather (near, i, k_ + k_ / 2);
     const Eigen::Vector3f &x = points_.positions[i];
-    HeightFit chosen = refined_[i];
-    for (const int j : s.nodes)
+    for (int turn = 0; turn < TURNS; ++turn)
     {
-      const HeightFit &f = fits_[std::size_t (j)];
-      (void) f; (void) best; (void) x;
+      const HeightFit &before = chosen_[i];
+      const std::size_t on_it = weigh (near, before, by_normals);
+      if (on_it < FEWEST)
+        return;
+      const HeightFit fit (near.positions, near.weights, before.normal (x), spacing_, tolerance_,
+                           on_it >= FOR_A_QUADRIC);
+      const double deviation = atLeastTolerance (fit.deviation ());
+      if (std::abs (fit.distance (x)) > 3.0 * deviation || deviation > 1.2 * atLeastTolerance (before.deviation ()))
+        return;
+      chosen_[i] = fit;
     }
-    refined_[i] = chosen;
-    refine (s, i, true);
+  }
+
+  /** \brief Weights of neighbours by their distance from a surface, and by their normals' angle with it if asked for.
+   * \return how many lie on the surface
+   */
+  std::size_t
+  weigh (Neighborhood &near, const HeightFit &surface, bool by_normals) const
+  {
+    constexpr float ANGLE = 0.18f; // radians
+    const double sigma = 1.5 * atLeastTolerance (surface.deviation ());
+    std::size_t on_it = 0;
+    for (std::size_t j = 0; j < near.nodes.size (); ++j)
+    {
+      double squares = std::pow (surface.distance (near.positions[j]) / sigma, 2);
+      if (by_normals)
+        squares +=
+            (surface.normal (near.positions[j]) - normals_[static_cast<std::size_t> (near.nodes[j])]).squaredNorm () /
+            (ANGLE * ANGLE);
+      near.weights[j] = squares < 9.0 ? static_cast<float> (std::exp (-0.5 * squares)) : 0.0f;
+      on_it += near.weights[j] > 0.3f;
+    }
+    return on_it;
+  }
+
+  void
+  takeNormals ()
+  {
+    normals_ = points_.normals;
+    for (std::size_t i = 0; i < points_.size (); ++i)
+    {
+      const Eigen::Vector3f normal = chosen_[i].normal (points_.positions[i]);
+      if (chosen_[i].weight () > 0.0 && normal.allFinite ())
+        normals_[i] = normal;
+    }
   }
 
   const NeighborSearch &search_;
+  const double spacing_;
+  const int threads_;
   const OrientedPoints &points_;
-  double spacing_;
-  int k_, threads_;
-  double noise_, floor_;
-  std::vector<HeightFit> fits_, refined_;
-  std::vector<Eigen::Vector3f> now_;
+  double tolerance_ = 0.0;               // of what counts as lying on a surface, input's unit of length
+  int k_ = 0;                            // neighbours of a fit
+  std::vector<HeightFit> fits_, chosen_; // of each point: around it, and that it lies on; no weight where unknown
+  std::vector<char> smooth_;             // whether the former is the latter
+  std::vector<Eigen::Vector3f> normals_; // new ones
 };
 
 } // namespace
@@ -211,16 +264,36 @@ private:
 void
 sharpenNormals (const NeighborSearch &search, double spacing, int k, int threads, OrientedPoints &points)
 {
-  Sharpener s (search, spacing, k, threads, points);
-  std::vector<Eigen::Vector3f> normals;
-  s.run (normals);
-  points.normals.swap (normals);
+  Sharpener sharpener (search, spacing, k, threads, points);
+  points.normals = sharpener.run ();
 }
 
 bool
-areNormalsSmeared (const NeighborSearch &, double, int, int, const OrientedPoints &)
+areNormalsSmeared (const NeighborSearch &search, double spacing, int k, int threads, const OrientedPoints &points)
 {
-  return false;
+  constexpr std::size_t ENOUGH = 20;
+  // Of PCA at edges, 0.25 to 0.35 and more with noise; of exact normals 0, but 0.3 where much noise feigns edges.
+  const double smeared = std::min (0.38, 0.2 + 0.6 * positionNoise (search, spacing, threads, points) / spacing);
+  Sharpener sharpener (search, spacing, k, threads, points);
+  sharpener.run ();
+  std::vector<double> lean (points.size ());
+  std::vector<char> known (points.size ());
+  sharpener.forEachPoint (
+      [&] (Neighborhood &near, std::size_t i)
+      {
+        bool is_known = false;
+        lean[i] = sharpener.leanOf (near, i, is_known);
+        known[i] = is_known;
+      });
+  std::vector<double> leans;
+  for (std::size_t i = 0; i < points.size (); ++i)
+    if (known[i])
+      leans.push_back (lean[i]);
+  if (leans.size () < ENOUGH)
+    return false;
+  const auto middle = leans.begin () + static_cast<std::ptrdiff_t> (leans.size () / 2);
+  std::nth_element (leans.begin (), middle, leans.end ());
+  return *middle > smeared;
 }
 
 } // namespace erkpa

@@ -51,7 +51,8 @@ sampleOf (std::size_t size)
   return sample;
 }
 
-/** \brief The value that a share of the values stays below; they may be negative where unknown and then do not count. */
+/** \brief The value that a share of the values stays below; they may be negative where unknown and then do not count.
+ */
 double
 quantile (std::vector<double> values, double share)
 {
@@ -103,12 +104,12 @@ normalResidual (const OrientedPoints &points, std::size_t i, double spacing, con
 HeightFit::HeightFit (const std::vector<Eigen::Vector3f> &points, const std::vector<float> &weights,
                       const Eigen::Vector3f &side, double spacing, double noise, bool curved)
 {
+  constexpr double BEND = 0.15; // expected second derivative, in 1 / spacing
+  const double ridge = std::pow (noise / (BEND * spacing), 2) + 1e-6;
   setFrame (points, weights, side);
-  const double bend = 0.15; // expected second derivative, in 1 / spacing
-  const double ridge = std::pow (noise / (bend * spacing), 2) + 1e-6;
-  Eigen::Matrix<double, 6, 6> moments = Eigen::Matrix<double, 6, 6>::Zero ();
+  Eigen::Matrix<double, 6, 6> moments = Eigen::Matrix<double, 6, 6>::Zero (); // lower half; lengths in spacings
   Terms sums = Terms::Zero ();
-  double total = 0.0, squares = 0.0, used = 0.0;
+  double squares = 0.0, used = 0.0;
   for (std::size_t i = 0; i < points.size (); ++i)
   {
     if (!(weights[i] > 0.0f))
@@ -120,23 +121,19 @@ HeightFit::HeightFit (const std::vector<Eigen::Vector3f> &points, const std::vec
     squares += weights[i] * p.z () * p.z ();
     used += 1.0;
   }
-  total = moments (0, 0);
-  for (int j = 0; j < 6; ++j)
-    moments (j, j) += j < 3 ? 1e-9 * total : ridge;
+  const double total = moments (0, 0);
+  moments.diagonal ().head<3> ().array () += 1e-9 * total;
+  moments.diagonal ().tail<3> ().array () += ridge;
+  const int count = curved ? 6 : 3;
   Terms heights = Terms::Zero ();
-  if (curved)
-    heights = moments.selfadjointView<Eigen::Lower> ().ldlt ().solve (sums);
-  else
-    heights.head<3> () = moments.topLeftCorner<3, 3> ().selfadjointView<Eigen::Lower> ().ldlt ().solve (sums.head<3> ());
-  const double left = squares - 2.0 * heights.dot (sums) +
-                      heights.dot (moments.selfadjointView<Eigen::Lower> () * heights) -
-                      ridge * heights.tail<3> ().squaredNorm ();
-  const double freedom = std::max (0.5, used - (curved ? 6.0 : 3.0)) * total / std::max (1.0, used);
+  heights.head (count) =
+      moments.topLeftCorner (count, count).selfadjointView<Eigen::Lower> ().ldlt ().solve (sums.head (count));
+  const double left = squares - heights.dot (sums) - ridge * heights.tail<3> ().squaredNorm ();
+  const double freedom = std::max (0.5, used - count) * total / std::max (1.0, used);
   deviation_ = static_cast<float> (spacing * std::sqrt (std::max (0.0, left / freedom)));
   weight_ = static_cast<float> (total);
-  const double scale = spacing;
-  heights[0] *= scale;
-  heights.tail<3> () /= scale;
+  heights[0] *= spacing;
+  heights.tail<3> () /= spacing;
   heights_ = heights.cast<float> ();
 }
 
@@ -192,25 +189,25 @@ void
 smoothNormals (const NeighborSearch &search, double spacing, int passes, int neighbors, double sigma_degrees,
                int threads, OrientedPoints &points)
 {
-  const double by_distance = -0.5 / std::pow (1.5 * spacing, 2), by_angle = -0.5 / std::pow (radians (sigma_degrees), 2);
+  const double by_distance = -0.5 / std::pow (1.5 * spacing, 2),
+               by_angle = -0.5 / std::pow (radians (sigma_degrees), 2);
   for (int pass = 0; pass < passes; ++pass)
   {
     std::vector<Eigen::Vector3f> smoothed (points.size ());
-    parallelFor (points.size (), threads, [] { return Query (); },
-                 [&] (Query &query, std::size_t i)
-                 {
-                   search.nearestK (points.positions[i], neighbors, query.indices, query.squared);
-                   Eigen::Vector3d sum = Eigen::Vector3d::Zero ();
-                   for (std::size_t j = 0; j < query.indices.size (); ++j)
-                   {
-                     const Eigen::Vector3f &normal = points.normals[static_cast<std::size_t> (query.indices[j])];
-                     const double angle = std::acos (std::clamp (points.normals[i].dot (normal), -1.0f, 1.0f));
-                     sum += std::exp (by_distance * query.squared[j] + by_angle * angle * angle) *
-                            normal.cast<double> ();
-                   }
-                   smoothed[i] = sum.norm () > 0.0 ? Eigen::Vector3f (sum.normalized ().cast<float> ())
-                                                   : points.normals[i];
-                 });
+    parallelFor (
+        points.size (), threads, [] { return Query (); },
+        [&] (Query &query, std::size_t i)
+        {
+          search.nearestK (points.positions[i], neighbors, query.indices, query.squared);
+          Eigen::Vector3d sum = Eigen::Vector3d::Zero ();
+          for (std::size_t j = 0; j < query.indices.size (); ++j)
+          {
+            const Eigen::Vector3f &normal = points.normals[static_cast<std::size_t> (query.indices[j])];
+            const double angle = std::acos (std::clamp (points.normals[i].dot (normal), -1.0f, 1.0f));
+            sum += std::exp (by_distance * query.squared[j] + by_angle * angle * angle) * normal.cast<double> ();
+          }
+          smoothed[i] = sum.norm () > 0.0 ? Eigen::Vector3f (sum.normalized ().cast<float> ()) : points.normals[i];
+        });
     points.normals.swap (smoothed);
   }
 }
@@ -222,12 +219,13 @@ normalNoise (const NeighborSearch &search, double spacing, int threads, const Or
   constexpr double MEDIAN = 0.8326; // of the angle, where its root mean square is 1: sqrt (ln 2)
   const std::vector<std::size_t> sample = sampleOf (points.size ());
   std::vector<double> angles (sample.size ());
-  parallelFor (sample.size (), threads, [] { return Query (); },
-               [&] (Query &query, std::size_t s)
-               {
-                 search.nearestK (points.positions[sample[s]], NEIGHBORS, query.indices, query.squared);
-                 angles[s] = normalResidual (points, sample[s], spacing, query.indices);
-               });
+  parallelFor (
+      sample.size (), threads, [] { return Query (); },
+      [&] (Query &query, std::size_t s)
+      {
+        search.nearestK (points.positions[sample[s]], NEIGHBORS, query.indices, query.squared);
+        angles[s] = normalResidual (points, sample[s], spacing, query.indices);
+      });
   return quantile (angles, 0.5) / MEDIAN * 180.0 / M_PI;
 }
 
@@ -238,21 +236,22 @@ positionNoise (const NeighborSearch &search, double spacing, int threads, const 
   constexpr double SHARE = 0.3, EXPECTED = 0.88; // quantile of the deviation's estimate with 12 degrees of freedom
   const std::vector<std::size_t> sample = sampleOf (points.size ());
   std::vector<double> deviations (sample.size ());
-  parallelFor (sample.size (), threads, [] { return Query (); },
-               [&] (Query &query, std::size_t s)
-               {
-                 const Eigen::Vector3f &normal = points.normals[sample[s]];
-                 search.nearestK (points.positions[sample[s]], NEIGHBORS, query.indices, query.squared);
-                 std::vector<Eigen::Vector3f> near;
-                 for (const int j : query.indices)
-                   if (normal.dot (points.normals[static_cast<std::size_t> (j)]) > -0.3f)
-                     near.push_back (points.positions[static_cast<std::size_t> (j)]);
-                 if (static_cast<int> (near.size ()) < NEIGHBORS - 4)
-                   deviations[s] = -1.0;
-                 else
-                   deviations[s] =
-                       HeightFit (near, std::vector<float> (near.size (), 1.0f), normal, spacing, 0.0, true).deviation ();
-               });
+  parallelFor (
+      sample.size (), threads, [] { return Query (); },
+      [&] (Query &query, std::size_t s)
+      {
+        const Eigen::Vector3f &normal = points.normals[sample[s]];
+        search.nearestK (points.positions[sample[s]], NEIGHBORS, query.indices, query.squared);
+        std::vector<Eigen::Vector3f> near;
+        for (const int j : query.indices)
+          if (normal.dot (points.normals[static_cast<std::size_t> (j)]) > -0.3f)
+            near.push_back (points.positions[static_cast<std::size_t> (j)]);
+        if (static_cast<int> (near.size ()) < NEIGHBORS - 4)
+          deviations[s] = -1.0;
+        else
+          deviations[s] =
+              HeightFit (near, std::vector<float> (near.size (), 1.0f), normal, spacing, 0.0, true).deviation ();
+      });
   return quantile (deviations, SHARE) / EXPECTED;
 }
 

@@ -82,61 +82,6 @@ private:
   SpaceWarp::ConstPtr back_;
 };
 
-class SharpBetween : public SharpSurface
-{
-public:
-  SharpBetween (ConstPtr face, ConstPtr other) : face_ (std::move (face)), other_ (std::move (other)) {}
-
-  double
-  theta (const Eigen::Vector3d &x) const override
-  {
-    return other_->theta (x) - face_->theta (x);
-  }
-
-  Eigen::Vector3d
-  thetaGradient (const Eigen::Vector3d &x) const override
-  {
-    return other_->thetaGradient (x) - face_->thetaGradient (x);
-  }
-
-  SharpSurfaceParts
-  parts () const override
-  {
-    SharpSurfaceParts parts;
-    parts.kind = Kind::BETWEEN;
-    parts.surface = face_;
-    parts.other = other_;
-    return parts;
-  }
-
-private:
-  ConstPtr face_, other_;
-};
-
-/** \brief The same for two planes: a plane, too. */
-class PlaneBetween : public SharpPlane
-{
-public:
-  PlaneBetween (const Eigen::Vector3d &unit_normal, double offset, ConstPtr face, ConstPtr other)
-      : SharpPlane (unit_normal, offset), face_ (std::move (face)), other_ (std::move (other))
-  {
-  }
-
-  SharpSurfaceParts
-  parts () const override
-  {
-    SharpSurfaceParts parts;
-    parts.kind = Kind::BETWEEN;
-    parts.surface = face_;
-    parts.other = other_;
-    parts.plane = this;
-    return parts;
-  }
-
-private:
-  ConstPtr face_, other_;
-};
-
 /** \brief A surface whose presence is that of an extent. */
 class LimitedSurface : public SharpSurface
 {
@@ -156,6 +101,12 @@ public:
   thetaGradient (const Eigen::Vector3d &x) const override
   {
     return surface_->thetaGradient (x);
+  }
+
+  void
+  evaluate (const Eigen::Vector3d &x, double &theta, Eigen::Vector3d &gradient) const override
+  {
+    surface_->evaluate (x, theta, gradient);
   }
 
   double
@@ -247,22 +198,6 @@ makeWarpedSharpSurface (SharpSurface::ConstPtr surface, SpaceWarp::ConstPtr back
 }
 
 SharpSurface::ConstPtr
-makeSharpBetween (SharpSurface::ConstPtr face, SharpSurface::ConstPtr other)
-{
-  if (!face || !other)
-    return nullptr;
-  const auto between = std::make_shared<SharpBetween> (face, other);
-  if (face->parts ().plane == nullptr || other->parts ().plane == nullptr)
-    return between;
-  const Eigen::Vector3d zero = Eigen::Vector3d::Zero (), normal = between->thetaGradient (zero);
-  constexpr double PARALLEL = 1e-6;
-  if (!(normal.norm () > PARALLEL))
-    return nullptr;
-  const double offset = between->theta (zero) / normal.norm ();
-  return std::make_shared<PlaneBetween> (normal.normalized (), offset, std::move (face), std::move (other));
-}
-
-SharpSurface::ConstPtr
 makeLimited (SharpSurface::ConstPtr surface, Extent::ConstPtr extent, double fade)
 {
   if (!surface || !extent || !(fade >= 0.0) || !std::isfinite (fade))
@@ -287,22 +222,6 @@ planeBehind (const SharpSurface &surface, const SpaceWarp **warp)
     else if (parts.kind != Kind::LIMITED)
       return parts.plane;
   }
-}
-
-bool
-facesBehind (const SharpSurface &surface, SharpSurface::ConstPtr &face, SharpSurface::ConstPtr &other,
-             Extent::ConstPtr &extent)
-{
-  SharpSurfaceParts parts = surface.parts ();
-  const Extent::ConstPtr outermost = parts.extent;
-  while (parts.kind == Kind::LIMITED)
-    parts = parts.surface->parts ();
-  if (parts.kind != Kind::BETWEEN)
-    return false;
-  face = parts.surface;
-  other = parts.other;
-  extent = outermost;
-  return true;
 }
 
 } // namespace erkpa

@@ -1,18 +1,15 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include "json_node.h"
 #include "sharp_models.h"
 
 #include <erkpa/face_of_points.h>
 #include <erkpa/sharp_surface_io.h>
 
 #include <boost/property_tree/json_parser.hpp>
-#include <boost/property_tree/ptree.hpp>
 
-#include <algorithm>
-#include <charconv>
-#include <cmath>
+#include <array>
 #include <cstddef>
 #include <sstream>
-#include <stdexcept>
 #include <string>
 #include <utility>
 
@@ -22,140 +19,22 @@ namespace erkpa
 namespace
 {
 
-using boost::property_tree::ptree;
-
-/** \brief What is wrong in the text, where, and what to do. */
-struct NotReadable : std::runtime_error
-{
-  using std::runtime_error::runtime_error;
-};
-
-/** \brief A value of the text, and where it stands. */
-class Node
-{
-public:
-  Node (const ptree &tree, std::string where) : tree_ (tree), where_ (std::move (where)) {}
-
-  [[noreturn]] void
-  fail (const std::string &what) const
-  {
-    throw NotReadable (where_ + " " + what);
-  }
-
-  bool
-  has (const char *name) const
-  {
-    return tree_.find (name) != tree_.not_found ();
-  }
-
-  Node
-  member (const char *name) const
-  {
-    const auto found = tree_.find (name);
-    if (found == tree_.not_found ())
-      fail (std::string ("has no \"") + name + "\": add it");
-    return {found->second, where_ + ", \"" + name + "\","};
-  }
-
-  /** \brief The values of a list. */
-  std::vector<Node>
-  list () const
-  {
-    std::vector<Node> nodes;
-    for (const auto &[name, child] : tree_)
-    {
-      if (!name.empty ())
-        fail ("must be a list in [ ]");
-      nodes.emplace_back (child, where_ + " " + std::to_string (nodes.size ()));
-    }
-    if (nodes.empty () && !tree_.data ().empty ())
-      fail ("must be a list in [ ]");
-    return nodes;
-  }
-
-  const std::string &
-  word () const
-  {
-    return tree_.data ();
-  }
-
-  template <typename NumberT>
-  NumberT
-  number () const
-  {
-    const std::string &text = tree_.data ();
-    NumberT number = 0;
-    const auto [end, error] = std::from_chars (text.data (), text.data () + text.size (), number);
-    if (error != std::errc () || end != text.data () + text.size () || !tree_.empty () ||
-        !std::isfinite (static_cast<double> (number)))
-      fail ("must be " + std::string (std::is_integral_v<NumberT> ? "a whole number" : "a number in range"));
-    return number;
-  }
-
-  template <typename NumberT, std::size_t Count>
-  std::array<NumberT, Count>
-  numbers () const
-  {
-    const std::string what = "must be a list of " + std::to_string (Count) + " numbers";
-    std::array<NumberT, Count> numbers;
-    std::size_t i = 0;
-    for (const auto &[name, child] : tree_)
-    {
-      if (!name.empty () || i == Count)
-        fail (what);
-      numbers[i++] = Node (child, where_).number<NumberT> ();
-    }
-    if (i != Count)
-      fail (what);
-    return numbers;
-  }
-
-  Eigen::Vector3d
-  vector () const
-  {
-    const auto v = numbers<double, 3> ();
-    return {v[0], v[1], v[2]};
-  }
-
-  std::vector<Eigen::Vector3d>
-  vectors () const
-  {
-    std::vector<Eigen::Vector3d> vectors;
-    for (const Node &node : list ())
-      vectors.push_back (node.vector ());
-    return vectors;
-  }
-
-  /** \brief Refuse members of other names. */
-  void
-  expectOnly (std::initializer_list<const char *> names) const
-  {
-    for (const auto &[name, child] : tree_)
-      if (std::none_of (names.begin (), names.end (), [&, &known = name] (const char *n) { return known == n; }))
-        fail ("has \"" + name + "\", which means nothing there: correct or remove it");
-  }
-
-private:
-  const ptree &tree_;
-  std::string where_;
-};
-
 void
-expectOk (const Node &node, const Outcome &outcome)
+expectOk (const JsonNode &node, const Outcome &outcome)
 {
   if (!outcome.ok ())
     node.fail ("makes no surface: " + outcome.message);
 }
 
 double
-numberOr0 (const Node &node, const char *name)
+numberOr0 (const JsonNode &node, const char *name)
 {
   return node.has (name) ? node.member (name).number<double> () : 0.0;
 }
 
 /** \brief A surface of a model: two vectors, the second maybe none, and a number. */
 SharpSurface::ConstPtr
-readModel (const Node &node, SurfaceModel model, const char *first, const char *second, const char *last)
+readModel (const JsonNode &node, SurfaceModel model, const char *first, const char *second, const char *last)
 {
   std::array<double, 7> coefficients = {};
   std::size_t count = 0;
@@ -171,11 +50,11 @@ readModel (const Node &node, SurfaceModel model, const char *first, const char *
 }
 
 SharpSurface::ConstPtr
-readPoints (const Node &node)
+readPoints (const JsonNode &node)
 {
   node.expectOnly ({"type", "extents", "origin", "k", "points"});
   std::vector<Eigen::Vector3f> positions, normals;
-  for (const Node &point : node.member ("points").list ())
+  for (const JsonNode &point : node.member ("points").list ())
   {
     const auto v = point.numbers<float, 6> ();
     positions.emplace_back (v[0], v[1], v[2]);
@@ -189,7 +68,7 @@ readPoints (const Node &node)
 }
 
 Extent::ConstPtr
-readExtent (const Node &node)
+readExtent (const JsonNode &node)
 {
   Extent::ConstPtr extent;
   const std::string type = node.member ("type").word ();
@@ -217,7 +96,7 @@ readExtent (const Node &node)
 using Surfaces = std::vector<SharpSurface::ConstPtr>;
 
 SharpSurface::ConstPtr
-readFace (const Node &node, const Surfaces &faces)
+readFace (const JsonNode &node, const Surfaces &faces)
 {
   const auto place = node.number<int> ();
   if (place < 0 || static_cast<std::size_t> (place) >= faces.size ())
@@ -227,7 +106,7 @@ readFace (const Node &node, const Surfaces &faces)
 }
 
 SharpSurface::ConstPtr
-readBetween (const Node &node, const Surfaces &faces)
+readBetween (const JsonNode &node, const Surfaces &faces)
 {
   node.expectOnly ({"type", "extents", "face", "other"});
   const auto between =
@@ -239,7 +118,7 @@ readBetween (const Node &node, const Surfaces &faces)
 
 /** \brief A surface without its extents. */
 SharpSurface::ConstPtr
-readWhole (const Node &node, const Surfaces &faces)
+readWhole (const JsonNode &node, const Surfaces &faces)
 {
   const std::string type = node.member ("type").word ();
   if (type == "plane")
@@ -254,18 +133,19 @@ readWhole (const Node &node, const Surfaces &faces)
     return readPoints (node);
   if (type == "between")
     return readBetween (node, faces);
-  if (type != "face")
-    node.fail ("has the type \"" + type + "\": use plane, sphere, cylinder, cone, points, between or face");
+  if (type != "face" && type != "reversed")
+    node.fail ("has the type \"" + type + "\": use plane, sphere, cylinder, cone, points, between, reversed or face");
   node.expectOnly ({"type", "extents", "face"});
-  return readFace (node.member ("face"), faces);
+  SharpSurface::ConstPtr face = readFace (node.member ("face"), faces);
+  return type == "face" ? face : makeReversed (face);
 }
 
 SharpSurface::ConstPtr
-readSurface (const Node &node, const Surfaces &faces)
+readSurface (const JsonNode &node, const Surfaces &faces)
 {
   SharpSurface::ConstPtr surface = readWhole (node, faces);
   if (node.has ("extents"))
-    for (const Node &extent : node.member ("extents").list ())
+    for (const JsonNode &extent : node.member ("extents").list ())
     {
       surface = makeLimited (surface, readExtent (extent), numberOr0 (extent, "fade"));
       if (!surface)
@@ -298,10 +178,10 @@ Surfaces
 read (const std::string &text)
 {
   checkDepth (text);
-  ptree tree;
+  boost::property_tree::ptree tree;
   std::istringstream stream (text);
   boost::property_tree::read_json (stream, tree);
-  const Node root (tree, "the whole");
+  const JsonNode root (tree, "the whole");
   constexpr const char *FORMAT = "erkpa sharp surfaces";
   if (!root.has ("format") || root.member ("format").word () != FORMAT)
     root.fail (std::string ("is no list of sharp surfaces: it must have \"format\": \"") + FORMAT + "\"");
@@ -310,10 +190,10 @@ read (const std::string &text)
   root.expectOnly ({"format", "version", "faces", "surfaces"});
   Surfaces faces, surfaces;
   if (root.has ("faces"))
-    for (const Node &node : Node (tree.get_child ("faces"), "face").list ())
+    for (const JsonNode &node : JsonNode (tree.get_child ("faces"), "face").list ())
       faces.push_back (readSurface (node, faces));
   root.member ("surfaces"); // must be there
-  for (const Node &node : Node (tree.get_child ("surfaces"), "surface").list ())
+  for (const JsonNode &node : JsonNode (tree.get_child ("surfaces"), "surface").list ())
     surfaces.push_back (readSurface (node, faces));
   return surfaces;
 }

@@ -167,6 +167,8 @@ Writer::membersText (const SharpSurface &surface, const SharpSurfaceParts &parts
       const std::string face = placeOf (*parts.surface), other = placeOf (*parts.other);
       return R"("type": "between", "face": )" + face + R"(, "other": )" + other;
     }
+    case Kind::REVERSED:
+      return R"("type": "reversed", "face": )" + placeOf (*parts.surface);
     case Kind::WARPED:
       throw NotWritable ("is seen through a warp of space");
     case Kind::LIMITED:

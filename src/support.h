@@ -112,6 +112,13 @@ public:
     return radius_;
   }
 
+  /** \brief Squared distance of a gathered value point from the point last selected for. */
+  double
+  squaredDistance (std::size_t slot) const
+  {
+    return squared_[slot];
+  }
+
   /** \brief ∇ε(x). */
   const Eigen::Vector3d &
   radiusGradient () const

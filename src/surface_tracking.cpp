@@ -20,6 +20,15 @@ constexpr GridPoint AGAINST[3] = {{-1, 0, 0}, {0, -1, 0}, {0, 0, -1}};
 
 } // namespace
 
+LocalField
+fieldForGrid (const ImplicitField &field, double voxel_size)
+{
+  constexpr double LEAST_WALL = 1.2; // voxels
+  LocalField local (field);
+  local.thicken (local.unwarpedLength (LEAST_WALL * voxel_size));
+  return local;
+}
+
 bool
 isInReach (const LocalField &local, const PolygonizerOptions &options, double voxel_size)
 {
@@ -104,7 +113,7 @@ SurfaceTracker::evaluateRequested ()
   for (std::size_t first = 0; first < requested_blocks_.size (); first += SLICE)
   {
     parallelFor (
-        std::min (SLICE, requested_blocks_.size () - first), options_.threads, [this] { return LocalField (field_); },
+        std::min (SLICE, requested_blocks_.size () - first), options_.threads, [this] { return fieldForGrid (field_, grid_.voxelSize ()); },
         [&] (LocalField &local, std::size_t i) { evaluateBlock (local, grid_.block (requested_blocks_[first + i])); },
         [this] (const LocalField &local)
         {
@@ -208,7 +217,7 @@ SurfaceTracker::seedFromProjections ()
   std::vector<Eigen::Vector3d> feet (away.size ());
   std::vector<char> has_foot (away.size (), 0);
   parallelFor (
-      away.size (), options_.threads, [this] { return LocalField (field_); },
+      away.size (), options_.threads, [this] { return fieldForGrid (field_, grid_.voxelSize ()); },
       [&] (LocalField &local, std::size_t i)
       {
         feet[i] = positions[away[i]].cast<double> ();

@@ -88,6 +88,10 @@ private:
   bool too_many_ = false;
 };
 
+/** \brief The field for a grid: walls so thin that both sides cross the same edge of the grid are thickened. */
+LocalField
+fieldForGrid (const ImplicitField &field, double voxel_size);
+
 /** \brief Whether a surface may be at a point: not farther from the nodes than the data supports. */
 bool
 isInReach (const LocalField &local, const PolygonizerOptions &options, double voxel_size);

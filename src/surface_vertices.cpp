@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "surface_vertices.h"
 
+#include "surface_tracking.h"
 #include "threads.h"
 
 #include <algorithm>
@@ -71,6 +72,26 @@ storeVertex (const LocalField &local, const LocalSample &sample, const Eigen::Ve
     local.blendAttributes (&vertices.attributes[vertex * static_cast<std::size_t> (channels)]);
 }
 
+/** \brief Moves a vertex of a thickened wall to the piece of f of its face. */
+void
+moveToFace (LocalField &local, const PolygonizerOptions &options, double voxel, std::size_t vertex,
+            SurfaceVertices &vertices)
+{
+  const Eigen::Vector3d start = vertices.positions[vertex];
+  for (int step = 0; step < MAX_STEPS; ++step)
+  {
+    const LocalSample sample = local.sampleOnFace (vertices.positions[vertex], vertices.faces[vertex]);
+    const double slope = sample.gradient.squaredNorm ();
+    if (!sample.isDefined () || !(slope > 0.0))
+      return;
+    vertices.normals[vertex] = sample.gradient / std::sqrt (slope);
+    const Eigen::Vector3d move = (options.iso_level - sample.value) / slope * sample.gradient;
+    if (!((vertices.positions[vertex] + move - start).norm () < voxel) || move.norm () < TOLERANCE * voxel)
+      return;
+    vertices.positions[vertex] += move;
+  }
+}
+
 } // namespace
 
 void
@@ -88,8 +109,10 @@ placeVertices (const ImplicitField &field, const PolygonizerOptions &options, Sp
     const Eigen::Vector3d position =
         roots.find (local, low, axis, block.values[static_cast<std::size_t> (node)],
                     grid.block (high.block).values[static_cast<std::size_t> (high.local)], sample);
-    storeVertex (local, sample, position, static_cast<std::size_t> (SparseGrid::vertexOnEdge (block, node, axis)),
-                 channels, vertices);
+    const auto vertex = static_cast<std::size_t> (SparseGrid::vertexOnEdge (block, node, axis));
+    storeVertex (local, sample, position, vertex, channels, vertices);
+    if (local.thickening () != 0.0)
+      moveToFace (local, options, grid.voxelSize (), vertex, vertices);
   };
   const auto place_in_block = [&] (LocalField &local, std::size_t index)
   {
@@ -111,7 +134,7 @@ placeVertices (const ImplicitField &field, const PolygonizerOptions &options, Sp
   for (std::size_t first = 0; first < blocks; first += SLICE)
   {
     parallelFor (
-        std::min (SLICE, blocks - first), options.threads, [&] { return LocalField (field); },
+        std::min (SLICE, blocks - first), options.threads, [&] { return fieldForGrid (field, grid.voxelSize ()); },
         [&] (LocalField &local, std::size_t i) { place_in_block (local, first + i); },
         [&report] (const LocalField &local)
         {

@@ -63,7 +63,7 @@ allKinds ()
                        erkpa::makeSharpBetween (plane, cylinder),
                        erkpa::makeSharpBetween (cylinder, ball),
                        erkpa::makeSharpBetween (plane, model (SurfaceModel::PLANE, {0.9f, -0.2f, 0.3f, 0.1f}))};
-  surfaces.push_back (erkpa::makeSharpBetween (surfaces[4], cone));
+  surfaces.push_back (erkpa::makeSharpBetween (surfaces[4], erkpa::makeReversed (cone)));
   for (const Extent::ConstPtr &extent : extents ())
     surfaces.push_back (erkpa::makeLimited (surfaces[surfaces.size () - 4], extent, 1.0 / 3.0));
   surfaces.push_back (erkpa::makeLimited (surfaces.back (), extents ()[0])); // limited twice

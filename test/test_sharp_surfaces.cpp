@@ -113,6 +113,7 @@ TEST_F (SharpSurfaces, GradientsAgreeWithDifferences)
       surfaceOf (SurfaceModel::CYLINDER, {0.1f, 0.0f, 0.0f, 1.0f, 1.0f, 0.0f, 0.5f}),
       surfaceOf (SurfaceModel::CONE, {0.0f, 2.0f, 0.0f, 0.3f, 1.0f, 0.0f, 0.4f}),
       erkpa::makeWarpedSharpSurface (plane, twist (0.8)),
+      erkpa::makeReversed (surfaceOf (SurfaceModel::CYLINDER, {0.1f, 0.0f, 0.0f, 1.0f, 1.0f, 0.0f, 0.5f})),
       erkpa::makeSharpFunction ([] (const Vector3d &x) { return x.x () * x.y () - x.z (); },
                                 [] (const Vector3d &x) { return Vector3d (x.y (), x.x (), -1.0); })};
   for (const SharpSurface::ConstPtr &surface : surfaces)
@@ -122,6 +123,20 @@ TEST_F (SharpSurfaces, GradientsAgreeWithDifferences)
       const Vector3d gradient = differences ([&] (const Vector3d &p) { return surface->theta (p); }, x);
       EXPECT_LT ((surface->thetaGradient (x) - gradient).norm (), 1e-6);
     }
+}
+
+TEST_F (SharpSurfaces, ReversedSurfaceHasItsOtherSideOutside)
+{
+  const auto plane = surfaceOf (SurfaceModel::PLANE, {1.0f, 2.0f, -1.0f, 0.3f});
+  const auto sphere = surfaceOf (SurfaceModel::SPHERE, {0.1f, 0.2f, 0.3f, 0.7f});
+  for (const SharpSurface::ConstPtr &surface : {plane, sphere})
+    for (int i = 0; i < 10; ++i)
+    {
+      const Vector3d x = randomPoint (1.0);
+      EXPECT_EQ (erkpa::makeReversed (surface)->theta (x), -surface->theta (x));
+    }
+  EXPECT_NE (erkpa::planeBehind (*erkpa::makeReversed (plane)), nullptr);
+  EXPECT_EQ (erkpa::makeReversed (nullptr), nullptr);
 }
 
 TEST_F (SharpSurfaces, CoefficientsThatMakeNoSurfaceAreRefusedWithTheirReason)

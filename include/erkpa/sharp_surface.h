@@ -49,6 +49,14 @@ public:
   virtual Eigen::Vector3d
   thetaGradient (const Eigen::Vector3d &x) const = 0;
 
+  /** \brief Both at once, which surfaces override where that saves time. */
+  virtual void
+  evaluate (const Eigen::Vector3d &x, double &theta, Eigen::Vector3d &gradient) const
+  {
+    theta = this->theta (x);
+    gradient = thetaGradient (x);
+  }
+
   /** \brief How much of the surface is in force at x: 1 in its extent, 0 far from it, C1 between. Always 1 without one.
    * \param[in] x a point
    * \param[in] radius support radius at x, by which an automatic fade goes
@@ -137,6 +145,12 @@ makeSharpSurface (SurfaceModel model, const std::vector<float> &coefficients, Sh
 SharpSurface::ConstPtr
 makeSharpBetween (SharpSurface::ConstPtr face, SharpSurface::ConstPtr other);
 
+/** \brief A surface with its other side outside: -θ. The wall of a hole, from the cylinder around it.
+ * \return null where \a surface is; a SharpPlane for a plane
+ */
+SharpSurface::ConstPtr
+makeReversed (SharpSurface::ConstPtr surface);
+
 /** \brief A sharp surface that is in force in a region only.
  *
  * A term of the fit belongs to a support, not to a point: to be sharp at an edge, the surface must be present at all
@@ -156,12 +170,13 @@ struct SharpSurfaceParts
 {
   enum class Kind
   {
-    OTHER,   ///< functions, or a class of the caller's own: not known
-    MODEL,   ///< \a model and \a coefficients
-    BETWEEN, ///< the faces \a surface and \a other
-    WARPED,  ///< \a surface seen through \a warp
-    LIMITED, ///< \a surface within \a extent
-    POINTS   ///< the face \a points
+    OTHER,    ///< functions, or a class of the caller's own: not known
+    MODEL,    ///< \a model and \a coefficients
+    BETWEEN,  ///< the faces \a surface and \a other
+    REVERSED, ///< -θ of \a surface
+    WARPED,   ///< \a surface seen through \a warp
+    LIMITED,  ///< \a surface within \a extent
+    POINTS    ///< the face \a points
   };
 
   Kind kind = Kind::OTHER;

@@ -37,6 +37,7 @@ namespace erkpa
  *   - points: a face of points: "origin", "k" (0 = chosen from the noise) and "points", each with its position relative
  *     to the origin and its normal
  *   - between: "face" and "other", where two faces meet
+ *   - reversed: "face", one of the faces with its other side outside: a plane, or the wall of a hole
  *   - face: "face", a surface that is one of the faces
  *
  * "face" and "other" are places in "faces", counted from 0; a face may refer to those before it. Faces that surfaces
