@@ -40,9 +40,9 @@ Enrichment::Enrichment (const ImplicitField &field)
     : field_ (field), jumps_ (field.options ().enrichment == EnrichmentType::JUMP)
 {
   const Order order = field.options ().order;
-  known_.resize (field.options ().sharp_surfaces.size ());
+  known_.resize (field.enrichingSurfaces ().size ());
   const bool squares = !jumps_ && field.options ().constraint == Constraint::HERMITE;
-  for (const SharpSurface::ConstPtr &surface : field.options ().sharp_surfaces)
+  for (const SharpSurface::ConstPtr &surface : field.enrichingSurfaces ())
   {
     const SpaceWarp *warp = nullptr;
     const bool is_linear = planeBehind (*surface, &warp) != nullptr && warp == nullptr;
@@ -58,7 +58,7 @@ Enrichment::gather (const Support &support)
 {
   near_count_ = 0;
   near_pencils_.clear ();
-  const int surfaces = static_cast<int> (field_.options ().sharp_surfaces.size ());
+  const int surfaces = static_cast<int> (field_.enrichingSurfaces ().size ());
   for (int surface = 0; surface < surfaces; ++surface)
     evaluateThetas (support, surface);
   if (near_count_ < 3)
@@ -76,7 +76,7 @@ Enrichment::gather (const Support &support)
 void
 Enrichment::evaluateThetas (const Support &support, int surface)
 {
-  const SharpSurface &sharp = *field_.options ().sharp_surfaces[static_cast<std::size_t> (surface)];
+  const SharpSurface &sharp = *field_.enrichingSurfaces ()[static_cast<std::size_t> (surface)];
   if (sharp.isAbsentIn (support.center () + field_.points ().origin, support.reach ()))
     return;
   const std::size_t slots = support.points ().size ();
@@ -110,7 +110,7 @@ Enrichment::knownTheta (const Support &support, int surface, std::size_t slot)
   const ValuePoint &point = support.points ()[slot];
   const auto [known, is_new] = known_[i].try_emplace (field_.valueIndex (point.node, point.side));
   if (is_new)
-    field_.options ().sharp_surfaces[i]->evaluate (support.position (slot) + field_.points ().origin,
+    field_.enrichingSurfaces ()[i]->evaluate (support.position (slot) + field_.points ().origin,
                                                    known->second.value, known->second.gradient);
   return known->second;
 }

@@ -149,7 +149,7 @@ private:
   const SharpSurface &
   surfaceOf (const NearSurface &near) const
   {
-    return *field_.options ().sharp_surfaces[static_cast<std::size_t> (near.surface)];
+    return *field_.enrichingSurfaces ()[static_cast<std::size_t> (near.surface)];
   }
 
   void

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "face_map.h"
 
+#include <erkpa/face_of_points.h>
+
 #include <algorithm>
 #include <cmath>
 #include <map>
@@ -26,14 +28,93 @@ searchOf (const std::vector<Meeting> &meetings)
 
 } // namespace
 
-FaceMap::FaceMap (const OrientedPoints &points, const NeighborSearch &search, std::vector<int> faces,
-                  std::vector<Meeting> separations, double spacing)
-    : faces_ (std::move (faces)), meetings_ (std::move (separations)), search_ (searchOf (meetings_))
+bool
+separatesFaces (const SharpSurface &surface)
 {
-  for (const Meeting &meeting : meetings_)
-    largest_reach_ = std::max (largest_reach_, meeting.reach);
-  findJoints (points, search, spacing);
-  search_ = searchOf (meetings_);
+  SharpSurface::ConstPtr face, other;
+  Extent::ConstPtr extent;
+  return facesBehind (surface, face, other, extent) && pointsBehind (*face) != nullptr &&
+         pointsBehind (*other) != nullptr && extent && extent->parts ().kind == ExtentParts::Kind::POINTS;
+}
+
+std::shared_ptr<const FaceMap>
+FaceMap::make (const OrientedPoints &points, const NeighborSearch &search,
+               const std::vector<SharpSurface::ConstPtr> &surfaces, double spacing)
+{
+  const std::shared_ptr<FaceMap> map (new FaceMap);
+  map->addSurfaces (points, surfaces);
+  if (map->meetings_.empty ())
+    return nullptr;
+  map->assignNodes (points, spacing);
+  map->search_ = searchOf (map->meetings_);
+  map->findJoints (points, search, spacing);
+  map->search_ = searchOf (map->meetings_);
+  return map;
+}
+
+void
+FaceMap::addSurfaces (const OrientedPoints &points, const std::vector<SharpSurface::ConstPtr> &surfaces)
+{
+  const auto number = [this] (const SharpSurface::ConstPtr &face)
+  {
+    const auto known = std::find (known_faces_.begin (), known_faces_.end (), face);
+    const auto place = static_cast<int> (known - known_faces_.begin ());
+    if (known == known_faces_.end ())
+      known_faces_.push_back (face);
+    return place;
+  };
+  for (std::size_t s = 0; s < surfaces.size (); ++s)
+  {
+    SharpSurface::ConstPtr face, other;
+    Extent::ConstPtr extent;
+    if (!separatesFaces (*surfaces[s]) || !facesBehind (*surfaces[s], face, other, extent))
+      continue;
+    const int a = number (face), b = number (other);
+    const ExtentParts parts = extent->parts ();
+    for (const Eigen::Vector3d &place : parts.points)
+      meetings_.push_back ({(place - points.origin).cast<float> (), std::min (a, b), std::max (a, b),
+                            static_cast<int> (s), parts.length});
+    largest_reach_ = std::max (largest_reach_, parts.length);
+  }
+}
+
+/** \brief A node is of the face of the nearest point that looks its way. */
+void
+FaceMap::assignNodes (const OrientedPoints &points, double spacing)
+{
+  constexpr int CANDIDATES = 6;
+  constexpr double NEAR = 2.0;          // spacings
+  constexpr float LEAST_COSINE = 0.7f;  // 45 degrees
+  std::vector<Eigen::Vector3f> positions, normals;
+  std::vector<int> owners;
+  for (std::size_t f = 0; f < known_faces_.size (); ++f)
+  {
+    const FacePoints &face = *pointsBehind (*known_faces_[f]);
+    const Eigen::Vector3d shift = face.origin - points.origin;
+    for (const Eigen::Vector3f &p : face.positions)
+      positions.emplace_back ((p.cast<double> () + shift).cast<float> ());
+    normals.insert (normals.end (), face.normals.begin (), face.normals.end ());
+    owners.resize (positions.size (), static_cast<int> (f));
+  }
+  const NeighborSearch::ConstPtr search = makeKdTreeSearch (positions);
+  std::vector<int> found;
+  std::vector<float> squared;
+  faces_.assign (points.size (), -1);
+  for (std::size_t i = 0; i < points.size (); ++i)
+  {
+    search->nearestK (points.positions[i], CANDIDATES, found, squared);
+    double nearest = NEAR * spacing;
+    for (std::size_t c = 0; c < found.size (); ++c)
+    {
+      const auto candidate = static_cast<std::size_t> (found[c]);
+      const double distance = std::sqrt (static_cast<double> (squared[c]));
+      if (distance < nearest && points.normals[i].dot (normals[candidate]) > LEAST_COSINE)
+      {
+        nearest = distance;
+        faces_[i] = owners[candidate];
+      }
+    }
+  }
 }
 
 /** \brief Neighbours on two faces that nothing keeps apart where they are join the faces. */

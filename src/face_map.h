@@ -3,8 +3,10 @@
 
 #include <erkpa/neighbor_search.h>
 #include <erkpa/oriented_points.h>
+#include <erkpa/sharp_surface.h>
 
 #include <cstddef>
+#include <memory>
 #include <vector>
 
 namespace erkpa
@@ -27,12 +29,13 @@ struct Meeting
 class FaceMap
 {
 public:
-  /** \param[in] faces face of each node, -1 for none
-   * \param[in] separations where faces are apart; surface >= 0
+  /** \brief The map that sharp surfaces between faces of points make; null where there are none among them.
+   * \param[in] surfaces any
    * \param[in] spacing distance between neighbouring nodes
    */
-  FaceMap (const OrientedPoints &points, const NeighborSearch &search, std::vector<int> faces,
-           std::vector<Meeting> separations, double spacing);
+  static std::shared_ptr<const FaceMap>
+  make (const OrientedPoints &points, const NeighborSearch &search,
+        const std::vector<SharpSurface::ConstPtr> &surfaces, double spacing);
 
   int
   faceOf (int node) const
@@ -52,13 +55,26 @@ public:
   meetingsNear (const Eigen::Vector3d &center, double extent, std::vector<int> &near) const;
 
 private:
+  FaceMap () = default;
+
+  void
+  addSurfaces (const OrientedPoints &points, const std::vector<SharpSurface::ConstPtr> &surfaces);
+
+  void
+  assignNodes (const OrientedPoints &points, double spacing);
+
   void
   findJoints (const OrientedPoints &points, const NeighborSearch &search, double spacing);
 
-  std::vector<int> faces_;
+  std::vector<int> faces_;                      // of the nodes, by place in known_faces_
+  std::vector<SharpSurface::ConstPtr> known_faces_;
   std::vector<Meeting> meetings_; // separations first
   double largest_reach_ = 0.0;
   NeighborSearch::ConstPtr search_; // over meetings_; null where there are none
 };
+
+/** \brief Whether a sharp surface keeps two faces of points apart: a FaceMap sees to it, not an enrichment. */
+bool
+separatesFaces (const SharpSurface &surface);
 
 } // namespace erkpa

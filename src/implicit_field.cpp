@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <erkpa/implicit_field.h>
 
+#include "face_map.h"
 #include "local_field.h"
 #include "noise.h"
 #include "support_size.h"
@@ -64,7 +65,11 @@ ImplicitField::ImplicitField (std::shared_ptr<const OrientedPoints> points, Neig
   spacing_ = options_.warp ? measureSpacing (warped_positions_, *warped_search_) : spacing;
   typical_radius_ = support_size_->typical () * (options_.warp && spacing > 0.0 ? spacing_ / spacing : 1.0);
   feature_size_ = spacing_ * std::sqrt (static_cast<double> (k) / CLEAN_SUPPORT);
-  pencils_ = std::make_shared<const std::vector<Pencil>> (findPencils (options_.sharp_surfaces, spacing));
+  for (const SharpSurface::ConstPtr &surface : options_.sharp_surfaces)
+    if (!separatesFaces (*surface))
+      enriching_.push_back (surface);
+  pencils_ = std::make_shared<const std::vector<Pencil>> (findPencils (enriching_, spacing));
+  faces_ = FaceMap::make (*points_, *search_, options_.sharp_surfaces, spacing);
   if (options_.constraint != Constraint::OFFSURFACE)
     return;
   offsets_ = support_size_->radiiOfNodes (*search_, threads);

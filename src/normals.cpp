@@ -3,6 +3,8 @@
 
 #include "noise.h"
 #include "normal_orientation.h"
+#include "normal_sharpening.h"
+#include "normal_smoothing.h"
 #include "threads.h"
 
 #include <pcl/features/normal_3d_omp.h>
@@ -59,6 +61,28 @@ estimateNormals (OrientedPoints &points, const NeighborSearch &search, const Nor
   orientation = orientNormals (points, search, k, options, estimated);
   points.normals.swap (estimated);
   return {};
+}
+
+RefinedNormals
+refineNormals (const NeighborSearch &search, bool estimated, int threads, OrientedPoints &points)
+{
+  constexpr double NOISY = 4.5;          // degrees
+  constexpr double NOISY_POSITION = 0.1; // spacings
+  constexpr int PASSES = 3, NEIGHBORS = 24;
+  constexpr double SIGMA = 25.0; // degrees
+  const int k = chooseSupportSize (points, search);
+  const double spacing = measureSpacing (points.positions, search);
+  RefinedNormals refined;
+  if (!(spacing > 0.0))
+    return refined;
+  refined.sharpened = estimated || areNormalsSmeared (search, spacing, k, threads, points);
+  if (refined.sharpened)
+    sharpenNormals (search, spacing, k, threads, points);
+  refined.smoothed = positionNoise (search, spacing, threads, points) > NOISY_POSITION * spacing ||
+                     (!refined.sharpened && normalNoise (search, spacing, threads, points) > NOISY);
+  if (refined.smoothed)
+    smoothNormals (search, spacing, PASSES, NEIGHBORS, SIGMA, threads, points);
+  return refined;
 }
 
 } // namespace erkpa

@@ -39,6 +39,21 @@ pencilOf (const std::array<const SharpPlane *, 3> &planes, double tolerance, Pen
   return true;
 }
 
+/** \brief A box around where a surface is in force, and a bit more. */
+Eigen::AlignedBox3d
+boundsOf (const SharpSurface &surface, double more)
+{
+  const Eigen::Vector3d infinite = Eigen::Vector3d::Constant (HUGE_VAL), margin = Eigen::Vector3d::Constant (more);
+  Eigen::AlignedBox3d bounds (-infinite, infinite);
+  for (SharpSurfaceParts parts = surface.parts (); parts.kind == SharpSurfaceParts::Kind::LIMITED;
+       parts = parts.surface->parts ())
+  {
+    const Eigen::AlignedBox3d box = parts.extent->bounds ();
+    bounds.clamp (Eigen::AlignedBox3d (box.min () - margin, box.max () + margin));
+  }
+  return bounds;
+}
+
 } // namespace
 
 std::vector<Pencil>
@@ -46,19 +61,27 @@ findPencils (const std::vector<SharpSurface::ConstPtr> &surfaces, double toleran
 {
   std::vector<const SharpPlane *> planes (surfaces.size ());
   std::vector<const SpaceWarp *> warps (surfaces.size ());
+  std::vector<Eigen::AlignedBox3d> bounds;
   for (std::size_t i = 0; i < surfaces.size (); ++i)
+  {
     planes[i] = planeBehind (*surfaces[i], &warps[i]);
+    bounds.push_back (boundsOf (*surfaces[i], tolerance));
+  }
   std::vector<Pencil> pencils;
   const int n = static_cast<int> (surfaces.size ());
   const auto plane = [&] (int i) { return planes[static_cast<std::size_t> (i)]; };
   const auto warp = [&] (int i) { return warps[static_cast<std::size_t> (i)]; };
+  const auto touch = [&] (int i, int j)
+  {
+    return plane (i) && plane (j) && warp (i) == warp (j) &&
+           bounds[static_cast<std::size_t> (i)].intersects (bounds[static_cast<std::size_t> (j)]);
+  };
   for (int a = 0; a < n; ++a)
     for (int b = a + 1; b < n; ++b)
-      for (int c = b + 1; c < n; ++c)
+      for (int c = b + 1; c < n && touch (a, b); ++c)
       {
         Pencil pencil{{a, b, c}, 0.0, 0.0};
-        if (plane (a) && plane (b) && plane (c) && warp (a) == warp (b) && warp (b) == warp (c) &&
-            pencilOf ({plane (a), plane (b), plane (c)}, tolerance, pencil))
+        if (touch (a, c) && touch (b, c) && pencilOf ({plane (a), plane (b), plane (c)}, tolerance, pencil))
           pencils.push_back (pencil);
       }
   return pencils;

@@ -21,7 +21,7 @@ struct Pencil
 };
 
 /** \brief The pencils among planes: triples that share a line to within \a tolerance (a length). Planes seen through
- * the same warp share the warped line. */
+ * the same warp share the warped line. Limited ones must touch, for a corner lies in the extents of all its edges. */
 std::vector<Pencil>
 findPencils (const std::vector<SharpSurface::ConstPtr> &surfaces, double tolerance);
 

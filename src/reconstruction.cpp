@@ -2,15 +2,12 @@
 #include <erkpa/reconstruction.h>
 
 #include "support.h"
-#include "sharp_edges.h"
 #include "support_size.h"
 #include "text.h"
 
 #include <algorithm>
 #include <chrono>
 #include <cmath>
-#include <cstdio>
-#include <cstdlib>
 #include <memory>
 #include <string>
 
@@ -129,32 +126,34 @@ makeField (const std::shared_ptr<const OrientedPoints> &points, const NeighborSe
   report.k = by_nearest ? made->options ().k : 0;
   report.radius = by_nearest ? 0.0 : made->supportSize ().typical ();
   report.spacing = made->spacing ();
-  if (options.sharp.automatic)
-  {
-    FoundFaces found = findFaces (*points, *search, options.sharp, options.polygonizer.threads);
-    std::fprintf (stderr, "faces %d separations %zu t=%g\n", found.count, found.separations.size (), report.seconds_field);
-    if (const char *dump = std::getenv ("ERKPA_DUMP"))
-    {
-      FILE *out = std::fopen (dump, "w");
-      for (std::size_t i = 0; i < points->size (); ++i)
-      {
-        const Eigen::Vector3d p = points->positions[i].cast<double> () + points->origin;
-        std::fprintf (out, "%g %g %g %d\n", p[0], p[1], p[2], found.faces[i]);
-      }
-      for (const Meeting &m : found.separations)
-      {
-        const Eigen::Vector3d p = m.position.cast<double> () + points->origin;
-        std::fprintf (out, "%g %g %g %d\n", p[0], p[1], p[2], -10 - m.surface);
-      }
-      std::fclose (out);
-    }
-    made->setFaces (std::make_shared<FaceMap> (*points, *search, found.faces, found.separations, made->spacing ()));
-  }
   outcome = checkField (*made);
   if (outcome.ok () && options.field.interpolation == Interpolation::COLLOCATION)
     outcome = interpolateNodes (*made, options.polygonizer.threads, report.collocation, progress);
   if (outcome.ok ())
     field = made;
+  return outcome;
+}
+
+/** \brief Where sharp edges are known or sought, normals must be those of one face each; then find the edges. */
+Outcome
+respectSharpEdges (const NeighborSearch &search, Options &options, OrientedPoints &points, Report &report)
+{
+  std::vector<SharpSurface::ConstPtr> &surfaces = options.field.sharp_surfaces;
+  if (!options.sharp.automatic && surfaces.empty ())
+    return {};
+  const int threads = options.polygonizer.threads;
+  if (options.normals.sharpen)
+  {
+    const StageClock clock (report.seconds_normals);
+    report.normals = refineNormals (search, report.points.without_normal > 0, threads, points);
+  }
+  if (!options.sharp.automatic)
+    return {};
+  const StageClock clock (report.seconds_sharp);
+  std::vector<SharpSurface::ConstPtr> found;
+  const Outcome outcome = findSharpSurfaces (points, search, options.sharp, threads, found);
+  report.sharp_surfaces = found;
+  surfaces.insert (surfaces.end (), found.begin (), found.end ());
   return outcome;
 }
 
@@ -182,7 +181,9 @@ buildField (const PointView &view, const Options &options, const SearchFactory &
     if (!outcome.ok ())
       return outcome;
   }
-  return makeField (points, search, options, field, report, progress);
+  Options complete = options;
+  outcome = respectSharpEdges (*search, complete, *points, report);
+  return outcome.ok () ? makeField (points, search, complete, field, report, progress) : outcome;
 }
 
 Outcome

@@ -216,12 +216,6 @@ public:
   void
   setNodeValues (std::vector<double> values);
 
-  void
-  setFaces (std::shared_ptr<const FaceMap> faces)
-  {
-    faces_ = std::move (faces);
-  }
-
   /** \brief The nodes where the surface is: warped where the field is. Local frame. */
   const std::vector<Eigen::Vector3f> &
   surfacePositions () const
@@ -248,6 +242,13 @@ public:
   pencils () const
   {
     return *pencils_;
+  }
+
+  /** \brief The sharp surfaces that enrich the reproduction vector: all but those between faces of points. */
+  const std::vector<SharpSurface::ConstPtr> &
+  enrichingSurfaces () const
+  {
+    return enriching_;
   }
 
   /** \brief The faces that found sharp surfaces keep apart; null where there are none. */
@@ -286,6 +287,7 @@ private:
   std::vector<Eigen::Vector3f> warped_positions_;
   NeighborSearch::ConstPtr warped_search_;
   std::shared_ptr<const std::vector<Pencil>> pencils_;
+  std::vector<SharpSurface::ConstPtr> enriching_;
   std::shared_ptr<const FaceMap> faces_;
   double typical_radius_ = 0.0;
   double spacing_ = 0.0;

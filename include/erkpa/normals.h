@@ -13,6 +13,7 @@ struct NormalOptions
   int k = 0;                                             ///< neighbours of the plane fit; 0 = chosen from the noise
   bool has_view_point = false;                           ///< whether the sensor's position is known
   Eigen::Vector3d view_point = Eigen::Vector3d::Zero (); ///< the sensor's position in the cloud's frame
+  bool sharpen = true; ///< where sharp edges are known or sought: see refineNormals ()
   int threads = 0;                                       ///< 0 = all processors
 };
 
@@ -29,5 +30,22 @@ enum class Orientation
 Outcome
 estimateNormals (OrientedPoints &points, const NeighborSearch &search, const NormalOptions &options,
                  Orientation &orientation);
+
+/** \brief What refineNormals () did. */
+struct RefinedNormals
+{
+  bool sharpened = false; ///< normals smeared across edges became those of one face each
+  bool smoothed = false;  ///< noise was taken out of the normals
+};
+
+/** \brief Make normals that respect sharp edges: each of the face its point is on.
+ *
+ * Estimated normals, and given ones that look estimated, are smeared across edges: they are fitted anew from points on
+ * their own side only. Noisy ones are smoothed, over neighbours that look their way. Others stay as they are.
+ * \param[in] estimated whether the normals come from estimateNormals ()
+ * \param[in] threads 0 = all processors
+ */
+RefinedNormals
+refineNormals (const NeighborSearch &search, bool estimated, int threads, OrientedPoints &points);
 
 } // namespace erkpa

@@ -11,6 +11,7 @@
 
 #include <functional>
 #include <string>
+#include <vector>
 
 namespace erkpa
 {
@@ -39,6 +40,8 @@ struct Report
   Orientation orientation = Orientation::NONE;
   int k = 0;           ///< neighbours of the support in force; 0 with a radius
   double radius = 0.0; ///< support radius in force, the median where it varies; 0 with k
+  RefinedNormals normals; ///< what was done to the normals for the sake of sharp edges
+  std::vector<SharpSurface::ConstPtr> sharp_surfaces; ///< the sharp edges that were found; not those given
   CollocationReport collocation;
   double spacing = 0.0; ///< typical distance between neighbouring points
   PolygonizerReport polygonizer;
@@ -47,6 +50,7 @@ struct Report
   std::size_t triangles = 0;
   double seconds_points = 0.0;      ///< gathering the points and building the search tree
   double seconds_normals = 0.0;     ///< estimating and orienting normals
+  double seconds_sharp = 0.0;       ///< finding sharp edges
   double seconds_field = 0.0;       ///< settling the support, collocation
   double seconds_polygonizer = 0.0; ///< meshing
   double seconds_total = 0.0;

@@ -1,0 +1,198 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <erkpa/face_of_points.h>
+#include <erkpa/sharp_detection.h>
+
+#include "face_segmentation.h"
+#include "mesh_graph.h"
+#include "noise.h"
+#include "normal_smoothing.h"
+#include "text.h"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <set>
+#include <string>
+#include <tuple>
+#include <utility>
+
+namespace erkpa
+{
+
+namespace
+{
+
+constexpr double DEGREES = M_PI / 180.0;
+
+/** \brief Sets of separations of the same two faces that follow each other: one crease or wall each. */
+DisjointSets
+chainSeparations (const std::vector<Separation> &separations, double step)
+{
+  std::vector<Eigen::Vector3f> positions;
+  for (const Separation &separation : separations)
+    positions.push_back (separation.position);
+  DisjointSets chains (separations.size ());
+  if (positions.empty ())
+    return chains;
+  const NeighborSearch::ConstPtr search = makeKdTreeSearch (positions);
+  std::vector<int> found;
+  std::vector<float> squared;
+  for (std::size_t i = 0; i < positions.size (); ++i)
+  {
+    search->withinRadius (positions[i], step, found, squared);
+    for (const int j : found)
+      if (separations[static_cast<std::size_t> (j)].face == separations[i].face &&
+          separations[static_cast<std::size_t> (j)].other == separations[i].other)
+        chains.unite (static_cast<int> (i), j);
+  }
+  return chains;
+}
+
+/** \brief How far a set of places extends, along its longest side. */
+std::map<int, float>
+lengthsOf (const std::vector<Separation> &separations, DisjointSets &chains)
+{
+  std::map<int, std::pair<Eigen::Vector3f, Eigen::Vector3f>> boxes;
+  for (std::size_t i = 0; i < separations.size (); ++i)
+  {
+    const Eigen::Vector3f &p = separations[i].position;
+    auto &box = boxes.try_emplace (chains.find (static_cast<int> (i)), p, p).first->second;
+    box.first = box.first.cwiseMin (p);
+    box.second = box.second.cwiseMax (p);
+  }
+  std::map<int, float> lengths;
+  for (const auto &[chain, box] : boxes)
+    lengths[chain] = (box.second - box.first).norm ();
+  return lengths;
+}
+
+/** \brief What noise asks for: the larger it is, the more nodes it takes to tell faces apart. */
+SegmentationOptions
+optionsFor (const OrientedPoints &points, const NeighborSearch &search, double angle, int k, int threads)
+{
+  SegmentationOptions options;
+  options.spacing = measureSpacing (points.positions, search);
+  options.angle = angle * DEGREES;
+  options.separation_reach = options.spacing * std::sqrt (k / M_PI);
+  if (k <= CLEAN_SUPPORT)
+    return options;
+  constexpr double SIGMAS = 3.0, NODES_PER_SUPPORT = 2.7;
+  options.chord = std::min (SIGMAS * positionNoise (search, options.spacing, threads, points), 1.2 * options.spacing);
+  options.ball = static_cast<int> (NODES_PER_SUPPORT * k);
+  options.smallest = 8;
+  return options;
+}
+
+/** \brief The faces as sharp surfaces know them; null for those of too few nodes. */
+std::vector<SharpSurface::ConstPtr>
+makeFaces (const OrientedPoints &points, const FaceSegmentation &found, const std::vector<char> &is_near, int k)
+{
+  std::vector<std::vector<Eigen::Vector3f>> positions (static_cast<std::size_t> (found.count)), normals = positions;
+  for (std::size_t i = 0; i < points.size (); ++i)
+    if (found.faces[i] >= 0 && is_near[i])
+    {
+      positions[static_cast<std::size_t> (found.faces[i])].push_back (points.positions[i]);
+      normals[static_cast<std::size_t> (found.faces[i])].push_back (points.normals[i]);
+    }
+  std::vector<SharpSurface::ConstPtr> faces;
+  for (std::size_t f = 0; f < positions.size (); ++f)
+    faces.push_back (makeFaceOfPoints (std::move (positions[f]), std::move (normals[f]), points.origin, k));
+  return faces;
+}
+
+/** \brief One stretch along which two faces meet. */
+struct Stretch
+{
+  int face, other;
+  std::vector<Eigen::Vector3d> places; // in the frame of the cloud
+  double reach = 0.0;
+};
+
+/** \brief Gathers separations into stretches; those too short to be an edge are dropped, close places thinned out. */
+std::vector<Stretch>
+gatherStretches (const OrientedPoints &points, const NeighborSearch &search, const std::vector<Separation> &separations,
+                 const SegmentationOptions &options, int k)
+{
+  constexpr double STEP = 0.5, REACH = 1.1; // spacings; support radii
+  const double shortest = (k > CLEAN_SUPPORT ? 4.0 : 2.0) * options.spacing;
+  DisjointSets chains = chainSeparations (separations, options.link_reach * options.spacing);
+  const std::map<int, float> lengths = lengthsOf (separations, chains);
+  std::map<int, std::size_t> numbers;
+  std::vector<Stretch> stretches;
+  std::set<std::tuple<std::size_t, long, long, long>> taken;
+  std::vector<int> nearest;
+  std::vector<float> squared;
+  for (std::size_t i = 0; i < separations.size (); ++i)
+  {
+    const int chain = chains.find (static_cast<int> (i));
+    if (lengths.at (chain) < shortest)
+      continue;
+    const auto [number, is_new] = numbers.try_emplace (chain, stretches.size ());
+    if (is_new)
+      stretches.push_back ({separations[i].face, separations[i].other, {}, 0.0});
+    const Eigen::Vector3f cell = (separations[i].position / (STEP * options.spacing)).array ().round ();
+    if (!taken.emplace (number->second, std::lround (cell.x ()), std::lround (cell.y ()), std::lround (cell.z ())).second)
+      continue;
+    Stretch &stretch = stretches[number->second];
+    stretch.places.emplace_back (separations[i].position.cast<double> () + points.origin);
+    search.nearestK (separations[i].position, k, nearest, squared);
+    const double radius = std::sqrt (static_cast<double> (*std::max_element (squared.begin (), squared.end ())));
+    stretch.reach = std::max (stretch.reach, REACH * radius);
+  }
+  return stretches;
+}
+
+/** \brief Marks the nodes that fits near the stretches can reach: the others need no face. */
+std::vector<char>
+markNear (const OrientedPoints &points, const std::vector<Stretch> &stretches)
+{
+  constexpr float FITS = 3.5f; // in reaches, which are about a support radius each
+  std::vector<Eigen::Vector3f> places;
+  float reach = 0.0f;
+  for (const Stretch &stretch : stretches)
+  {
+    reach = std::max (reach, static_cast<float> (stretch.reach));
+    for (const Eigen::Vector3d &place : stretch.places)
+      places.emplace_back ((place - points.origin).cast<float> ());
+  }
+  std::vector<char> is_near (points.size (), 0);
+  if (places.empty ())
+    return is_near;
+  const NeighborSearch::ConstPtr search = makeKdTreeSearch (places);
+  std::vector<int> nearest;
+  std::vector<float> squared;
+  for (std::size_t i = 0; i < points.size (); ++i)
+  {
+    search->nearestK (points.positions[i], 1, nearest, squared);
+    is_near[i] = squared.front () < FITS * FITS * reach * reach ? 1 : 0;
+  }
+  return is_near;
+}
+
+} // namespace
+
+Outcome
+findSharpSurfaces (const OrientedPoints &points, const NeighborSearch &search, const SharpOptions &options, int threads,
+                   std::vector<SharpSurface::ConstPtr> &surfaces)
+{
+  surfaces.clear ();
+  if (!(options.angle >= 5.0 && options.angle <= 90.0))
+    return {Status::INVALID_SETTING,
+            "the angle of sharp edges is " + toText (options.angle) + " degrees: use one of 5 to 90"};
+  const int k = chooseSupportSize (points, search);
+  const SegmentationOptions segmentation = optionsFor (points, search, options.angle, k, threads);
+  const FaceSegmentation found = segmentFaces (points, search, segmentation, threads);
+  const std::vector<Stretch> stretches = gatherStretches (points, search, found.separations, segmentation, k);
+  const std::vector<SharpSurface::ConstPtr> faces = makeFaces (points, found, markNear (points, stretches), k);
+  for (const Stretch &stretch : stretches)
+  {
+    const auto &face = faces[static_cast<std::size_t> (stretch.face)];
+    const auto &other = faces[static_cast<std::size_t> (stretch.other)];
+    Extent::ConstPtr extent;
+    if (face && other && makePointsExtent (stretch.places, stretch.reach, extent).ok ())
+      surfaces.push_back (makeLimited (makeSharpBetween (face, other), extent));
+  }
+  return {};
+}
+
+} // namespace erkpa
