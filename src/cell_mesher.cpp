@@ -30,10 +30,10 @@ loopOf (const SparseGrid &grid, const GridPoint &cell, const CellLoops &loops, i
 }
 
 bool
-hasSeveralFaces (const CellLoop &loop, const SurfaceVertices &vertices)
+hasSeveralSides (const CellLoop &loop, const SurfaceVertices &vertices)
 {
-  const auto face = [&] (int v) { return vertices.faces[static_cast<std::size_t> (v)]; };
-  return std::any_of (loop.ring.begin (), loop.ring.end (), [&] (int v) { return face (v) != face (loop.ring[0]); });
+  const auto key = [&] (int v) { return vertices.side_keys[static_cast<std::size_t> (v)]; };
+  return std::any_of (loop.ring.begin (), loop.ring.end (), [&] (int v) { return key (v) != key (loop.ring[0]); });
 }
 
 void
@@ -43,7 +43,7 @@ meshCell (const SparseGrid &grid, const GridPoint &cell, const SurfaceVertices &
   for (int l = 0; l < loops.count; ++l)
   {
     const CellLoop loop = loopOf (grid, cell, loops, l);
-    if (hasSeveralFaces (loop, vertices))
+    if (hasSeveralSides (loop, vertices))
       mesh.mixed_loops.push_back (loop);
     else if (!triangulateCell (loop, vertices, mesh.triangles))
       mesh.centered_loops.push_back (loop);

@@ -63,6 +63,7 @@ private:
     vertices_.normals.push_back (loop.normal);
     vertices_.border_offsets.push_back (loop.border_offset);
     vertices_.faces.push_back (loop.face);
+    vertices_.side_keys.push_back (0);
     vertices_.attributes.insert (vertices_.attributes.end (), loop.attributes.begin (), loop.attributes.end ());
     return center;
   }

@@ -167,8 +167,11 @@ Enrichment::activate (NearSurface &near, const Support &support)
   const SharpSurface &surface = surfaceOf (near);
   near.presence = surface.presence (position_, support.radius ());
   near.active = near.presence > MIN_PRESENCE;
-  if (near.active)
-    surface.evaluate (position_, near.at_point.value, near.at_point.gradient);
+  if (!near.active)
+    return;
+  surface.evaluate (position_, near.at_point.value, near.at_point.gradient);
+  if (place_ != nullptr)
+    near.at_place = surface.theta (*place_);
 }
 
 double
@@ -311,8 +314,50 @@ void
 Enrichment::atPoint (int term, double radius, double &value, Eigen::Vector3d &gradient) const
 {
   const Term &t = terms_[static_cast<std::size_t> (term)];
+  if (place_ != nullptr && !t.is_square)
+  {
+    continueToPoint (t, radius, value, gradient);
+    return;
+  }
   const Theta *b = t.second < 0 ? nullptr : &near_[static_cast<std::size_t> (t.second)].at_point;
   evaluate (t, near_[static_cast<std::size_t> (t.first)].at_point, b, radius, value, gradient);
+}
+
+/** \brief Of the smooth pieces of a term take the one that holds at the place it is looked at from. */
+void
+Enrichment::continueToPoint (const Term &term, double radius, double &value, Eigen::Vector3d &gradient) const
+{
+  const NearSurface *near = &near_[static_cast<std::size_t> (term.first)];
+  double scale = term.scale_a;
+  if (term.second >= 0)
+  {
+    const NearSurface &b = near_[static_cast<std::size_t> (term.second)];
+    if (term.scale_b * b.at_place < scale * near->at_place)
+    {
+      near = &b;
+      scale = term.scale_b;
+    }
+  }
+  value = 0.0;
+  gradient.setZero ();
+  if (!(scale * near->at_place > 0.0))
+    return;
+  value = jumps_ ? 1.0 : scale * near->at_point.value / radius;
+  if (!jumps_)
+    gradient = scale * near->at_point.gradient;
+}
+
+std::uint64_t
+Enrichment::sideKey () const
+{
+  std::uint64_t key = 0;
+  for (std::size_t i = 0; i < near_count_; ++i)
+    if (near_[i].active)
+    {
+      const auto side = static_cast<std::uint64_t> (2 * near_[i].surface + (near_[i].at_point.value < 0.0 ? 1 : 2));
+      key = (key ^ side) * 0x100000001b3ULL + 1; // FNV-1a
+    }
+  return key;
 }
 
 } // namespace erkpa

@@ -5,6 +5,7 @@
 #include "support.h"
 
 #include <cstddef>
+#include <cstdint>
 #include <unordered_map>
 #include <vector>
 
@@ -43,6 +44,20 @@ public:
   /** \brief Choose the active terms for the support selected at \a x, and evaluate θ(x). */
   void
   select (const Support &support, const Eigen::Vector3d &x);
+
+  /** \brief See the next evaluation points from the side of every sharp surface on which \a place lies (in the input's
+   * frame): the terms go on smoothly beyond Γ. Null: from where they are.
+   */
+  void
+  lookFrom (const Eigen::Vector3d *place)
+  {
+    place_ = place;
+  }
+
+  /** \brief A number that says on which side of every active surface the evaluation point lies; 0 where none is active.
+   */
+  std::uint64_t
+  sideKey () const;
 
   /** \brief Number of active terms. */
   int
@@ -106,6 +121,7 @@ private:
     int surface;
     std::vector<Theta> at_nodes;
     Theta at_point;
+    double at_place = 0.0;     ///< θ where the point is looked at from
     bool active;
     double presence;           ///< of the surface at x
     double weight_below = 0.0; ///< of the support's nodes with θ < 0
@@ -157,6 +173,9 @@ private:
             Eigen::Vector3d &gradient) const;
 
   void
+  continueToPoint (const Term &term, double radius, double &value, Eigen::Vector3d &gradient) const;
+
+  void
   addCornerTerms (const Pencil &pencil);
 
   const ImplicitField &field_;
@@ -169,6 +188,7 @@ private:
   std::vector<NearSurface> near_;
   std::size_t near_count_ = 0; // near_ keeps its memory from ball to ball
   std::vector<Term> terms_;
+  const Eigen::Vector3d *place_ = nullptr;              // looked at from; null: from the point itself
   Eigen::Vector3d position_ = Eigen::Vector3d::Zero (); // selected for, in the input's frame
   double total_weight_ = 0.0;                           // of the support's nodes
 };

@@ -33,7 +33,7 @@ public:
     for (const int v : loop.ring)
       middle += position (v) / static_cast<double> (loop.ring.size ());
     local_.gather (middle, REACH * voxel_);
-    findFaces (loop, result);
+    findSides (loop, result);
     if (result.crossings.empty ())
       return;
     result.position = minimizeDistances (loop, middle);
@@ -49,7 +49,8 @@ public:
   }
 
 private:
-  static constexpr double REACH = 2.5; // voxels that a vertex may be away from the middle of its loop
+  static constexpr double LEAST_TURN = 0.07; // radians, 4 degrees: what turns less is no crease
+  static constexpr double REACH = 2.5;       // voxels that a vertex may be away from the middle of its loop
 
   const Eigen::Vector3d &
   position (int v) const
@@ -57,41 +58,49 @@ private:
     return vertices_.positions[static_cast<std::size_t> (v)];
   }
 
-  int
-  faceOf (int v) const
+  std::uint64_t
+  keyOf (int v) const
   {
-    return vertices_.faces[static_cast<std::size_t> (v)];
+    return vertices_.side_keys[static_cast<std::size_t> (v)];
   }
 
-  /** \brief Cut the loop where creases cross it; faces_ are those of the parts. */
-  void
-  findFaces (const CellLoop &loop, MeshedLoop &result)
+  Side
+  sideOf (int v) const
   {
-    faces_.clear ();
+    return {vertices_.faces[static_cast<std::size_t> (v)], position (v)};
+  }
+
+  /** \brief Find where creases cross the loop, and the sides of them that its vertices lie on. */
+  void
+  findSides (const CellLoop &loop, MeshedLoop &result)
+  {
+    sides_.clear ();
     const std::size_t n = loop.ring.size ();
     for (std::size_t i = 0; i < n; ++i)
     {
       const int a = loop.ring[i], b = loop.ring[(i + 1) % n];
-      if (faceOf (a) == faceOf (b) || !isCrease (a, b))
+      if (keyOf (a) == keyOf (b) || !isCrease (std::min (a, b), std::max (a, b)))
         continue;
       result.crossings.push_back (orderedPair (a, b));
-      for (const int face : {faceOf (a), faceOf (b)})
-        if (std::find (faces_.begin (), faces_.end (), face) == faces_.end ())
-          faces_.push_back (face);
+      for (const int v : {a, b})
+        if (std::none_of (sides_.begin (), sides_.end (), [&] (int other) { return keyOf (other) == keyOf (v); }))
+          sides_.push_back (v);
     }
   }
 
-  /** \brief Whether the pieces of f on the faces of two vertices turn against each other between them. */
+  /** \brief Whether the pieces of f on the sides of two vertices turn against each other between them. */
   bool
   isCrease (int a, int b)
   {
-    constexpr double LEAST_TURN = 0.07; // radians, 4 degrees
     const Eigen::Vector3d middle = 0.5 * (position (a) + position (b));
-    const LocalSample one = local_.sampleOnFace (middle, std::min (faceOf (a), faceOf (b)));
-    const LocalSample other = local_.sampleOnFace (middle, std::max (faceOf (a), faceOf (b)));
-    if (!one.isDefined () || !other.isDefined ())
-      return false;
-    return std::atan2 (one.gradient.cross (other.gradient).norm (), one.gradient.dot (other.gradient)) > LEAST_TURN;
+    const LocalSample one = local_.sampleOnSide (middle, sideOf (a)), other = local_.sampleOnSide (middle, sideOf (b));
+    return one.isDefined () && other.isDefined () && turnBetween (one.gradient, other.gradient) > LEAST_TURN;
+  }
+
+  static double
+  turnBetween (const Eigen::Vector3d &a, const Eigen::Vector3d &b)
+  {
+    return std::atan2 (a.cross (b).norm (), a.dot (b));
   }
 
   /** \brief The point nearest to the tangent planes at the loop's vertices (Kobbelt et al. 2001). */
@@ -115,19 +124,19 @@ private:
     return middle + (length > limit ? limit / length : 1.0) * step;
   }
 
-  /** \brief Newton steps of least norm to f = iso on all faces of the loop. */
+  /** \brief Newton steps of least norm to f = iso on all sides. */
   bool
   solve (const Eigen::Vector3d &middle, Eigen::Vector3d &x)
   {
     constexpr int STEPS = 10;
-    const auto count = static_cast<Eigen::Index> (faces_.size ());
+    const auto count = static_cast<Eigen::Index> (sides_.size ());
     Eigen::Matrix<double, Eigen::Dynamic, 3> gradients (count, 3);
     Eigen::VectorXd values (count);
     for (int step = 0; step < STEPS; ++step)
     {
       for (Eigen::Index i = 0; i < count; ++i)
       {
-        const LocalSample sample = local_.sampleOnFace (x, faces_[static_cast<std::size_t> (i)]);
+        const LocalSample sample = local_.sampleOnSide (x, sideOf (sides_[static_cast<std::size_t> (i)]));
         if (!sample.isDefined ())
           return false;
         values[i] = options_.iso_level - sample.value;
@@ -156,13 +165,17 @@ private:
     result.attributes.resize (channels_);
     if (channels_ > 0)
       local_.blendAttributes (result.attributes.data ());
-    result.normal.setZero ();
-    for (const int face : faces_)
+    std::vector<Eigen::Vector3d> normals; // of the faces: several sides of sharp surfaces can be of one
+    for (const int v : sides_)
     {
-      const LocalSample piece = local_.sampleOnFace (result.position, face);
-      if (piece.isDefined () && piece.gradient.norm () > 0.0)
-        result.normal += piece.gradient.normalized ();
+      const LocalSample piece = local_.sampleOnSide (result.position, sideOf (v));
+      const auto is_known = [&] (const Eigen::Vector3d &n) { return turnBetween (n, piece.gradient) < LEAST_TURN; };
+      if (piece.isDefined () && piece.gradient.norm () > 0.0 && std::none_of (normals.begin (), normals.end (), is_known))
+        normals.push_back (piece.gradient.normalized ());
     }
+    result.normal.setZero ();
+    for (const Eigen::Vector3d &normal : normals)
+      result.normal += normal;
     if (result.normal.norm () > 0.0)
       result.normal.normalize ();
   }
@@ -172,7 +185,7 @@ private:
   const SurfaceVertices &vertices_;
   LocalField local_;
   std::size_t channels_;
-  std::vector<int> faces_;
+  std::vector<int> sides_; // a vertex on each
 };
 
 } // namespace

@@ -12,6 +12,17 @@
 namespace erkpa
 {
 
+namespace
+{
+
+std::uint64_t
+sideKeyOf (int face, std::uint64_t enrichment)
+{
+  return static_cast<std::uint64_t> (face + 1) << 40 ^ enrichment;
+}
+
+} // namespace
+
 void
 LocalField::gather (const Eigen::Vector3d &center, double extent)
 {
@@ -119,7 +130,9 @@ LocalField::evaluateUnwarped (const Eigen::Vector3d &x, Task task)
     return evaluateFaces (x, task);
   face_ = nearestFace ();
   thickening_ = 0.0;
-  return fitSelected (x, task);
+  const bool is_defined = fitSelected (x, task);
+  side_key_ = sideKeyOf (face_, enrichment_.sideKey ());
+  return is_defined;
 }
 
 bool
@@ -181,6 +194,7 @@ LocalField::evaluateFaces (const Eigen::Vector3d &x, Task task)
     face_ = nearestFace ();
     if (task != Task::VALUE)
       fitSelected (x, task);
+    side_key_ = sideKeyOf (face_, enrichment_.sideKey ());
     result_.value = values_[winner] - thickening_;
   }
   support_.select (x);
@@ -238,11 +252,11 @@ LocalField::thickeningAt (const FaceTree &tree, std::size_t winner) const
 }
 
 LocalSample
-LocalField::sampleOnFace (const Eigen::Vector3d &x, int face)
+LocalField::sampleOnSide (const Eigen::Vector3d &x, const Side &side)
 {
   LocalSample sample;
-  Eigen::Vector3d unwarped = x;
-  if (warp_ != nullptr && !unwarp (x, unwarped))
+  Eigen::Vector3d unwarped = x, place = side.place;
+  if (warp_ != nullptr && (!unwarp (side.place, place) || !unwarp (x, unwarped)))
     return sample;
   if ((unwarped - ball_center_).norm () > ball_extent_ || !support_.covers (unwarped))
     gatherUnwarped (unwarped, 0.0);
@@ -250,10 +264,14 @@ LocalField::sampleOnFace (const Eigen::Vector3d &x, int face)
   bool in_reach = support_.select (unwarped);
   if (in_reach && groups_.select (support_, unwarped))
   {
-    const int group = groups_.groupOf (face);
+    const int group = groups_.groupOf (side.face);
     in_reach = group >= 0 && support_.selectPart (unwarped, groups_.members (group));
   }
-  if (!in_reach || !fitSelected (unwarped, Task::GRADIENT))
+  place += field_.points ().origin;
+  enrichment_.lookFrom (&place);
+  const bool is_defined = in_reach && fitSelected (unwarped, Task::GRADIENT);
+  enrichment_.lookFrom (nullptr);
+  if (!is_defined)
     return sample;
   static_cast<FieldSample &> (sample) = result_;
   sample.radius = support_.radius ();

@@ -12,6 +12,7 @@
 
 #include <cmath>
 #include <cstddef>
+#include <cstdint>
 
 namespace erkpa
 {
@@ -21,6 +22,13 @@ struct LocalSample : FieldSample
 {
   double radius = 0.0;        ///< support radius ε(x)
   double border_offset = 0.0; ///< |centroid of the weighted nodes - x| along the surface, in ε
+};
+
+/** \brief A side of every crease: a face, and of the other sharp surfaces the side on which a place lies. */
+struct Side
+{
+  int face = -1;
+  Eigen::Vector3d place = Eigen::Vector3d::Zero (); ///< local frame
 };
 
 /** \brief The field seen from one ball: gathers the nodes once, then evaluates f at any of the ball's points.
@@ -50,9 +58,10 @@ public:
   LocalSample
   sample (const Eigen::Vector3d &x);
 
-  /** \brief The smooth piece of f that holds on a face, continued to x; undefined where the face is out of reach. */
+  /** \brief The smooth piece of f that holds on a side of all creases, continued to x; undefined where the face is out
+   * of reach. */
   LocalSample
-  sampleOnFace (const Eigen::Vector3d &x, int face);
+  sampleOnSide (const Eigen::Vector3d &x, const Side &side);
 
   /** \brief The shape functions of the nodes in reach of x (eq. 19). */
   std::vector<ShapeFunction>
@@ -72,6 +81,13 @@ public:
   thickening () const
   {
     return thickening_;
+  }
+
+  /** \brief A number that differs between the two sides of a crease. */
+  std::uint64_t
+  sideKey () const
+  {
+    return side_key_;
   }
 
   /** \brief The face whose piece of f held at the point last evaluated; -1 where the field has no faces. */
@@ -191,6 +207,7 @@ private:
   double least_wall_ = 0.0, thickening_ = 0.0;
   std::vector<double> heights_;      // piece after piece, of the ballot
   int face_ = -1;
+  std::uint64_t side_key_ = 0;
   FieldSample result_;
   std::vector<ShapeFunction> shape_functions_;
   std::size_t evaluations_ = 0, support_nodes_ = 0;

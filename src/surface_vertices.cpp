@@ -68,6 +68,7 @@ storeVertex (const LocalField &local, const LocalSample &sample, const Eigen::Ve
   vertices.normals[vertex] = slope > 0.0 ? Eigen::Vector3d (sample.gradient / slope) : Eigen::Vector3d::Zero ();
   vertices.border_offsets[vertex] = sample.border_offset;
   vertices.faces[vertex] = local.face ();
+  vertices.side_keys[vertex] = local.sideKey ();
   if (channels > 0)
     local.blendAttributes (&vertices.attributes[vertex * static_cast<std::size_t> (channels)]);
 }
@@ -80,7 +81,7 @@ moveToFace (LocalField &local, const PolygonizerOptions &options, double voxel, 
   const Eigen::Vector3d start = vertices.positions[vertex];
   for (int step = 0; step < MAX_STEPS; ++step)
   {
-    const LocalSample sample = local.sampleOnFace (vertices.positions[vertex], vertices.faces[vertex]);
+    const LocalSample sample = local.sampleOnSide (vertices.positions[vertex], {vertices.faces[vertex], start});
     const double slope = sample.gradient.squaredNorm ();
     if (!sample.isDefined () || !(slope > 0.0))
       return;

@@ -6,6 +6,7 @@
 
 #include <erkpa/marching_cubes.h>
 
+#include <cstdint>
 #include <vector>
 
 namespace erkpa
@@ -18,6 +19,7 @@ struct SurfaceVertices
   std::vector<Eigen::Vector3d> normals; ///< unit, ∇f/|∇f|
   std::vector<double> border_offsets;   ///< see LocalSample::border_offset
   std::vector<int> faces;               ///< face whose piece of f the vertex is on; -1 where there are none
+  std::vector<std::uint64_t> side_keys; ///< see LocalField::sideKey ()
   std::vector<float> attributes;        ///< channels values per vertex
 
   void
@@ -27,6 +29,7 @@ struct SurfaceVertices
     normals.resize (size);
     border_offsets.resize (size);
     faces.resize (size, -1);
+    side_keys.resize (size, 0);
     attributes.resize (size * static_cast<std::size_t> (channels));
   }
 
@@ -42,6 +45,7 @@ struct SurfaceVertices
     normals.push_back (normal);
     border_offsets.push_back (border_offsets[vertex]);
     faces.push_back (faces[vertex]);
+    side_keys.push_back (side_keys[vertex]);
   }
 };
 
