@@ -75,7 +75,8 @@ private:
     joined_.clear ();
     creases_.clear ();
     for (const auto &[pair, of] : crossings_)
-      if (of.size () == 2 && on_crease_[static_cast<std::size_t> (of[0])] && on_crease_[static_cast<std::size_t> (of[1])])
+      if (of.size () == 2 && on_crease_[static_cast<std::size_t> (of[0])] &&
+          on_crease_[static_cast<std::size_t> (of[1])])
       {
         const VertexPair edge = orderedPair (center (of[0]), center (of[1]));
         if (edge.first != edge.second && creases_.insert (edge).second)
@@ -190,7 +191,7 @@ private:
   SurfaceVertices &vertices_;
   std::vector<int> centers_;
   std::vector<char> on_crease_;
-  std::map<VertexPair, std::vector<int>> crossings_;      // the loops that a crossing is of
+  std::map<VertexPair, std::vector<int>> crossings_; // the loops that a crossing is of
   std::map<VertexPair, std::pair<int, int>> joined_; // the loops that it joins
   std::set<VertexPair> creases_;
 };

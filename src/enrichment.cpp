@@ -110,8 +110,8 @@ Enrichment::knownTheta (const Support &support, int surface, std::size_t slot)
   const ValuePoint &point = support.points ()[slot];
   const auto [known, is_new] = known_[i].try_emplace (field_.valueIndex (point.node, point.side));
   if (is_new)
-    field_.enrichingSurfaces ()[i]->evaluate (support.position (slot) + field_.points ().origin,
-                                                   known->second.value, known->second.gradient);
+    field_.enrichingSurfaces ()[i]->evaluate (support.position (slot) + field_.points ().origin, known->second.value,
+                                              known->second.gradient);
   return known->second;
 }
 
@@ -345,6 +345,19 @@ Enrichment::continueToPoint (const Term &term, double radius, double &value, Eig
   value = jumps_ ? 1.0 : scale * near->at_point.value / radius;
   if (!jumps_)
     gradient = scale * near->at_point.gradient;
+}
+
+int
+Enrichment::nearestSurface (double &distance) const
+{
+  int nearest = -1;
+  for (std::size_t i = 0; i < near_count_; ++i)
+    if (near_[i].active && (nearest < 0 || std::abs (near_[i].at_point.value) < distance))
+    {
+      nearest = near_[i].surface;
+      distance = std::abs (near_[i].at_point.value);
+    }
+  return nearest;
 }
 
 std::uint64_t

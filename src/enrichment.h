@@ -59,6 +59,10 @@ public:
   std::uint64_t
   sideKey () const;
 
+  /** \brief The active surface nearest to the evaluation point, and |θ| there; -1 where none is active. */
+  int
+  nearestSurface (double &distance) const;
+
   /** \brief Number of active terms. */
   int
   size () const
@@ -121,7 +125,7 @@ private:
     int surface;
     std::vector<Theta> at_nodes;
     Theta at_point;
-    double at_place = 0.0;     ///< θ where the point is looked at from
+    double at_place = 0.0; ///< θ where the point is looked at from
     bool active;
     double presence;           ///< of the surface at x
     double weight_below = 0.0; ///< of the support's nodes with θ < 0

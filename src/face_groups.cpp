@@ -46,8 +46,8 @@ FaceGroups::findPairs (const Eigen::Vector3d &x)
     const double distance = (meeting.position.cast<double> () - x).norm ();
     if (distance > meeting.reach)
       continue;
-    auto pair = std::find_if (pairs_.begin (), pairs_.end (), [&] (const Pair &p)
-                              { return p.face == meeting.face && p.other == meeting.other; });
+    auto pair = std::find_if (pairs_.begin (), pairs_.end (),
+                              [&] (const Pair &p) { return p.face == meeting.face && p.other == meeting.other; });
     if (pair == pairs_.end ())
       pair = pairs_.insert (pairs_.end (), {meeting.face, meeting.other, HUGE_VAL, HUGE_VAL});
     double &nearest = meeting.surface >= 0 ? pair->separate : pair->joined;
@@ -73,7 +73,8 @@ FaceGroups::uniteJoined ()
     const int a = placeOf (pair.face), b = placeOf (pair.other);
     if (!(pair.joined < pair.separate) || a < 0 || b < 0)
       continue;
-    const int from = representatives_[static_cast<std::size_t> (b)], to = representatives_[static_cast<std::size_t> (a)];
+    const int from = representatives_[static_cast<std::size_t> (b)],
+              to = representatives_[static_cast<std::size_t> (a)];
     std::replace (representatives_.begin (), representatives_.end (), std::max (from, to), std::min (from, to));
   }
 }
@@ -89,6 +90,26 @@ FaceGroups::groupOf (int face) const
     if (groups_[g].representative == representative)
       return static_cast<int> (g);
   return -1;
+}
+
+std::vector<const Meeting *>
+FaceGroups::separationsAt (const Eigen::Vector3d &x) const
+{
+  std::vector<const Meeting *> nearest;
+  const auto distance = [&x] (const Meeting &meeting) { return (meeting.position.cast<double> () - x).norm (); };
+  for (const int m : near_)
+  {
+    const Meeting &meeting = faces_->meetings ()[static_cast<std::size_t> (m)];
+    if (meeting.surface < 0 || distance (meeting) > meeting.reach)
+      continue;
+    const auto known = std::find_if (nearest.begin (), nearest.end (),
+                                     [&] (const Meeting *other) { return other->surface == meeting.surface; });
+    if (known == nearest.end ())
+      nearest.push_back (&meeting);
+    else if (distance (meeting) < distance (**known))
+      *known = &meeting;
+  }
+  return nearest;
 }
 
 bool
@@ -125,7 +146,8 @@ FaceGroups::select (const Support &support, const Eigen::Vector3d &x)
   }
   if (groups_.size () < 2)
     return false;
-  std::stable_sort (groups_.begin (), groups_.end (), [] (const Group &a, const Group &b) { return a.nodes > b.nodes; });
+  std::stable_sort (groups_.begin (), groups_.end (),
+                    [] (const Group &a, const Group &b) { return a.nodes > b.nodes; });
   for (Group &group : groups_)
     group.members.assign (face_of_slot_.size (), 0);
   for (std::size_t slot = 0; slot < face_of_slot_.size (); ++slot)

@@ -51,6 +51,10 @@ public:
     return groups_[static_cast<std::size_t> (group)].members;
   }
 
+  /** \brief For every sharp surface in reach of \a x the place where it keeps faces apart that is nearest. */
+  std::vector<const Meeting *>
+  separationsAt (const Eigen::Vector3d &x) const;
+
   /** \brief The group that a face is of; -1 where it is of none. */
   int
   groupOf (int face) const;

@@ -83,8 +83,8 @@ void
 FaceMap::assignNodes (const OrientedPoints &points, double spacing)
 {
   constexpr int CANDIDATES = 6;
-  constexpr double NEAR = 2.0;          // spacings
-  constexpr float LEAST_COSINE = 0.7f;  // 45 degrees
+  constexpr double NEAR = 2.0;         // spacings
+  constexpr float LEAST_COSINE = 0.7f; // 45 degrees
   std::vector<Eigen::Vector3f> positions, normals;
   std::vector<int> owners;
   for (std::size_t f = 0; f < known_faces_.size (); ++f)

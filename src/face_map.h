@@ -34,8 +34,8 @@ public:
    * \param[in] spacing distance between neighbouring nodes
    */
   static std::shared_ptr<const FaceMap>
-  make (const OrientedPoints &points, const NeighborSearch &search,
-        const std::vector<SharpSurface::ConstPtr> &surfaces, double spacing);
+  make (const OrientedPoints &points, const NeighborSearch &search, const std::vector<SharpSurface::ConstPtr> &surfaces,
+        double spacing);
 
   int
   faceOf (int node) const
@@ -66,7 +66,7 @@ private:
   void
   findJoints (const OrientedPoints &points, const NeighborSearch &search, double spacing);
 
-  std::vector<int> faces_;                      // of the nodes, by place in known_faces_
+  std::vector<int> faces_; // of the nodes, by place in known_faces_
   std::vector<SharpSurface::ConstPtr> known_faces_;
   std::vector<Meeting> meetings_; // separations first
   double largest_reach_ = 0.0;

@@ -165,8 +165,7 @@ findNodesApart (const OrientedPoints &points, const NeighborSearch &search, cons
 class FaceGrower
 {
 public:
-  FaceGrower (const OrientedPoints &points, const SegmentationOptions &options, const NodeLists &links,
-              NodeLists apart)
+  FaceGrower (const OrientedPoints &points, const SegmentationOptions &options, const NodeLists &links, NodeLists apart)
       : sets_ (points.size ()), apart_ (std::move (apart))
   {
     for (std::size_t i = 0; i < links.size (); ++i)
@@ -214,8 +213,9 @@ private:
   {
     sets_.unite (a, b);
     const auto root = static_cast<std::size_t> (sets_.find (a));
-    auto &kept = apart_[root], &other = apart_[root == static_cast<std::size_t> (a) ? static_cast<std::size_t> (b)
-                                                                                    : static_cast<std::size_t> (a)];
+    auto &kept = apart_[root],
+         &other =
+             apart_[root == static_cast<std::size_t> (a) ? static_cast<std::size_t> (b) : static_cast<std::size_t> (a)];
     if (kept.size () < other.size ())
       kept.swap (other);
     kept.insert (kept.end (), other.begin (), other.end ());

@@ -170,7 +170,8 @@ private:
     {
       const LocalSample piece = local_.sampleOnSide (result.position, sideOf (v));
       const auto is_known = [&] (const Eigen::Vector3d &n) { return turnBetween (n, piece.gradient) < LEAST_TURN; };
-      if (piece.isDefined () && piece.gradient.norm () > 0.0 && std::none_of (normals.begin (), normals.end (), is_known))
+      if (piece.isDefined () && piece.gradient.norm () > 0.0 &&
+          std::none_of (normals.begin (), normals.end (), is_known))
         normals.push_back (piece.gradient.normalized ());
     }
     result.normal.setZero ();

@@ -65,9 +65,12 @@ ImplicitField::ImplicitField (std::shared_ptr<const OrientedPoints> points, Neig
   spacing_ = options_.warp ? measureSpacing (warped_positions_, *warped_search_) : spacing;
   typical_radius_ = support_size_->typical () * (options_.warp && spacing > 0.0 ? spacing_ / spacing : 1.0);
   feature_size_ = spacing_ * std::sqrt (static_cast<double> (k) / CLEAN_SUPPORT);
-  for (const SharpSurface::ConstPtr &surface : options_.sharp_surfaces)
-    if (!separatesFaces (*surface))
-      enriching_.push_back (surface);
+  for (std::size_t i = 0; i < options_.sharp_surfaces.size (); ++i)
+    if (!separatesFaces (*options_.sharp_surfaces[i]))
+    {
+      enriching_.push_back (options_.sharp_surfaces[i]);
+      enriching_places_.push_back (static_cast<int> (i));
+    }
   pencils_ = std::make_shared<const std::vector<Pencil>> (findPencils (enriching_, spacing));
   faces_ = FaceMap::make (*points_, *search_, options_.sharp_surfaces, spacing);
   if (options_.constraint != Constraint::OFFSURFACE)

@@ -280,6 +280,35 @@ LocalField::sampleOnSide (const Eigen::Vector3d &x, const Side &side)
   return sample;
 }
 
+int
+LocalField::sharpSurfaceAt (const Eigen::Vector3d &x)
+{
+  Eigen::Vector3d unwarped = x;
+  if (warp_ != nullptr && !unwarp (x, unwarped))
+    return -1;
+  gatherUnwarped (unwarped, 0.0);
+  if (!support_.select (unwarped))
+    return -1;
+  const bool has_faces = groups_.select (support_, unwarped);
+  enrichment_.select (support_, unwarped);
+  double least = 0.0;
+  int best = enrichment_.nearestSurface (least);
+  best = best < 0 ? -1 : field_.placeOfEnriching (best);
+  if (!has_faces)
+    return best;
+  for (const Meeting *meeting : groups_.separationsAt (unwarped))
+  {
+    const LocalSample one = sampleOnSide (x, {meeting->face, x}), other = sampleOnSide (x, {meeting->other, x});
+    const double miss = std::max (std::abs (one.value), std::abs (other.value));
+    if (one.isDefined () && other.isDefined () && (best < 0 || miss < least))
+    {
+      least = miss;
+      best = meeting->surface;
+    }
+  }
+  return best;
+}
+
 /** \brief Face of the nearest node in the support selected. */
 int
 LocalField::nearestFace () const

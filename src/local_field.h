@@ -63,6 +63,10 @@ public:
   LocalSample
   sampleOnSide (const Eigen::Vector3d &x, const Side &side);
 
+  /** \brief The sharp surface that cuts the crease at x: its place in the field's options; -1 where there is none. */
+  int
+  sharpSurfaceAt (const Eigen::Vector3d &x);
+
   /** \brief The shape functions of the nodes in reach of x (eq. 19). */
   std::vector<ShapeFunction>
   shapeFunctions (const Eigen::Vector3d &x);
@@ -201,11 +205,11 @@ private:
 
   std::vector<Vote> ballot_; // of the nodes that say how faces combine
   double ballot_radius_ = 0.0;
-  std::vector<int> pieces_;          // the groups that have a fit at the point last evaluated
-  std::vector<double> values_;       // of the pieces
+  std::vector<int> pieces_;    // the groups that have a fit at the point last evaluated
+  std::vector<double> values_; // of the pieces
   std::vector<Eigen::Vector3d> slopes_;
   double least_wall_ = 0.0, thickening_ = 0.0;
-  std::vector<double> heights_;      // piece after piece, of the ballot
+  std::vector<double> heights_; // piece after piece, of the ballot
   int face_ = -1;
   std::uint64_t side_key_ = 0;
   FieldSample result_;

@@ -5,6 +5,7 @@
 #include "cell_loops.h"
 #include "cell_mesher.h"
 #include "crease_edges.h"
+#include "crease_lines.h"
 #include "feature_loops.h"
 #include "mesh_graph.h"
 #include "sparse_grid.h"
@@ -161,9 +162,11 @@ fillNormals (const std::vector<Triangle> &triangles, SurfaceVertices &vertices)
 }
 
 TriangleMesh
-toInputFrame (const OrientedPoints &points, const SurfaceVertices &vertices, std::vector<Triangle> &triangles)
+toInputFrame (const OrientedPoints &points, const SurfaceVertices &vertices, std::vector<Triangle> &triangles,
+              std::vector<Crease> creases)
 {
   TriangleMesh mesh;
+  mesh.creases = std::move (creases);
   mesh.vertices.reserve (vertices.positions.size ());
   mesh.normals.reserve (vertices.positions.size ());
   for (std::size_t v = 0; v < vertices.positions.size (); ++v)
@@ -236,7 +239,8 @@ polygonize (const ImplicitField &field, const PolygonizerOptions &options, Trian
     return noSurface (field, voxel, report.dropped_components);
   splitFans (triangles, vertices);
   fillNormals (triangles, vertices);
-  mesh = toInputFrame (field.points (), vertices, triangles);
+  std::vector<Crease> lines = traceCreases (field, options, creases, triangles, vertices);
+  mesh = toInputFrame (field.points (), vertices, triangles, std::move (lines));
   return {};
 }
 

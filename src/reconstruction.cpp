@@ -139,7 +139,8 @@ Outcome
 respectSharpEdges (const NeighborSearch &search, Options &options, OrientedPoints &points, Report &report)
 {
   std::vector<SharpSurface::ConstPtr> &surfaces = options.field.sharp_surfaces;
-  if (!options.sharp.automatic && surfaces.empty ())
+  const SharpOptions &sharp = options.sharp;
+  if (!sharp.automatic && sharp.faces.empty () && surfaces.empty ())
     return {};
   const int threads = options.polygonizer.threads;
   if (options.normals.sharpen)
@@ -147,11 +148,14 @@ respectSharpEdges (const NeighborSearch &search, Options &options, OrientedPoint
     const StageClock clock (report.seconds_normals);
     report.normals = refineNormals (search, report.points.without_normal > 0, threads, points);
   }
-  if (!options.sharp.automatic)
-    return {};
   const StageClock clock (report.seconds_sharp);
-  std::vector<SharpSurface::ConstPtr> found;
-  const Outcome outcome = findSharpSurfaces (points, search, options.sharp, threads, found);
+  std::vector<SharpSurface::ConstPtr> found, between;
+  Outcome outcome;
+  if (sharp.automatic)
+    outcome = findSharpSurfaces (points, search, sharp, threads, found);
+  if (outcome.ok () && !sharp.faces.empty ())
+    outcome = sharpEdgesFromFaces (points, sharp.faces, sharp.face_tolerance, between);
+  found.insert (found.end (), between.begin (), between.end ());
   report.sharp_surfaces = found;
   surfaces.insert (surfaces.end (), found.begin (), found.end ());
   return outcome;
@@ -194,6 +198,10 @@ buildMesh (const ImplicitField &field, const Options &options, TriangleMesh &mes
   const StageClock clock (report.seconds_polygonizer);
   Outcome outcome = polygonize (field, options.polygonizer, mesh, report.polygonizer, progress);
   report.topology = measureTopology (mesh);
+  report.creases = mesh.creases;
+  report.corners = findCorners (mesh.creases);
+  if (options.polygonizer.split_normals)
+    splitNormals (mesh);
   report.vertices = mesh.vertices.size ();
   report.triangles = mesh.triangles.size ();
   return outcome;

@@ -131,7 +131,8 @@ gatherStretches (const OrientedPoints &points, const NeighborSearch &search, con
     if (is_new)
       stretches.push_back ({separations[i].face, separations[i].other, {}, 0.0});
     const Eigen::Vector3f cell = (separations[i].position / (STEP * options.spacing)).array ().round ();
-    if (!taken.emplace (number->second, std::lround (cell.x ()), std::lround (cell.y ()), std::lround (cell.z ())).second)
+    if (!taken.emplace (number->second, std::lround (cell.x ()), std::lround (cell.y ()), std::lround (cell.z ()))
+             .second)
       continue;
     Stretch &stretch = stretches[number->second];
     stretch.places.emplace_back (separations[i].position.cast<double> () + points.origin);

@@ -113,7 +113,8 @@ SurfaceTracker::evaluateRequested ()
   for (std::size_t first = 0; first < requested_blocks_.size (); first += SLICE)
   {
     parallelFor (
-        std::min (SLICE, requested_blocks_.size () - first), options_.threads, [this] { return fieldForGrid (field_, grid_.voxelSize ()); },
+        std::min (SLICE, requested_blocks_.size () - first), options_.threads,
+        [this] { return fieldForGrid (field_, grid_.voxelSize ()); },
         [&] (LocalField &local, std::size_t i) { evaluateBlock (local, grid_.block (requested_blocks_[first + i])); },
         [this] (const LocalField &local)
         {

@@ -3,8 +3,13 @@
 
 #include "mesh_graph.h"
 
+#include <Eigen/Geometry>
+
 #include <algorithm>
 #include <cstdint>
+#include <map>
+#include <set>
+#include <utility>
 
 namespace erkpa
 {
@@ -88,6 +93,102 @@ removeUnusedVertices (TriangleMesh &mesh)
   for (auto &triangle : mesh.triangles)
     for (int &v : triangle)
       v = renumbered[static_cast<std::size_t> (v)];
+  for (Crease &crease : mesh.creases)
+    for (int &v : crease.vertices)
+      v = renumbered[static_cast<std::size_t> (v)];
+}
+
+std::vector<int>
+findCorners (const std::vector<Crease> &creases)
+{
+  std::map<int, int> ends;
+  for (const Crease &crease : creases)
+    for (const int v : {crease.vertices.front (), crease.vertices.back ()})
+      ++ends[v];
+  std::vector<int> corners;
+  for (const auto &[vertex, count] : ends)
+    if (count > 2)
+      corners.push_back (vertex);
+  return corners;
+}
+
+namespace
+{
+
+using Edge = std::pair<int, int>;
+
+/** \brief Corners of triangles that go on into each other around a vertex without crossing a crease. */
+DisjointSets
+findSides (const TriangleMesh &mesh)
+{
+  std::set<Edge> creases;
+  for (const Crease &crease : mesh.creases)
+    for (std::size_t i = 0; i + 1 < crease.vertices.size (); ++i)
+      creases.emplace (std::minmax (crease.vertices[i], crease.vertices[i + 1]));
+  DisjointSets sides (3 * mesh.triangles.size ());
+  std::map<Edge, int> starts; // the triangle corner at the start of a directed edge, of edges at crease vertices
+  std::vector<char> on_crease (mesh.vertices.size (), 0);
+  for (const Edge &edge : creases)
+    on_crease[static_cast<std::size_t> (edge.first)] = on_crease[static_cast<std::size_t> (edge.second)] = 1;
+  const auto corner_after = [] (int corner) { return corner % 3 == 2 ? corner - 2 : corner + 1; };
+  for (int corner = 0; corner < 3 * static_cast<int> (mesh.triangles.size ()); ++corner)
+  {
+    const auto &triangle = mesh.triangles[static_cast<std::size_t> (corner / 3)];
+    const int a = triangle[static_cast<std::size_t> (corner % 3)];
+    const int b = triangle[static_cast<std::size_t> ((corner + 1) % 3)];
+    if ((!on_crease[static_cast<std::size_t> (a)] && !on_crease[static_cast<std::size_t> (b)]) ||
+        creases.count (std::minmax (a, b)) > 0)
+      continue;
+    starts[{a, b}] = corner;
+    const auto twin = starts.find ({b, a});
+    if (twin == starts.end ())
+      continue;
+    sides.unite (corner_after (corner), twin->second);
+    sides.unite (corner, corner_after (twin->second));
+  }
+  return sides;
+}
+
+} // namespace
+
+void
+splitNormals (TriangleMesh &mesh)
+{
+  DisjointSets sides = findSides (mesh);
+  std::vector<char> on_crease (mesh.vertices.size (), 0);
+  for (const Crease &crease : mesh.creases)
+    for (const int v : crease.vertices)
+      on_crease[static_cast<std::size_t> (v)] = 1;
+  const auto channels = static_cast<std::size_t> (mesh.channels);
+  std::map<std::pair<int, int>, int> vertex_of_side; // by vertex and side
+  std::vector<char> is_taken (mesh.vertices.size (), 0);
+  std::map<int, Eigen::Vector3f> areas;
+  for (std::size_t corner = 0; corner < 3 * mesh.triangles.size (); ++corner)
+  {
+    auto &triangle = mesh.triangles[corner / 3];
+    const std::array<int, 3> old = triangle;
+    int &vertex = triangle[corner % 3];
+    if (static_cast<std::size_t> (vertex) >= on_crease.size () || !on_crease[static_cast<std::size_t> (vertex)])
+      continue;
+    const auto v = static_cast<std::size_t> (vertex);
+    const auto [entry, is_new] = vertex_of_side.try_emplace ({vertex, sides.find (static_cast<int> (corner))}, vertex);
+    if (is_new && is_taken[v])
+    {
+      entry->second = static_cast<int> (mesh.vertices.size ());
+      mesh.vertices.push_back (Eigen::Vector3f (mesh.vertices[v]));
+      mesh.normals.push_back (Eigen::Vector3f (mesh.normals[v]));
+      for (std::size_t c = 0; c < channels; ++c)
+        mesh.attributes.push_back (float (mesh.attributes[v * channels + c]));
+    }
+    is_taken[v] = 1;
+    vertex = entry->second;
+    const auto at = [&] (std::size_t i) { return mesh.vertices[static_cast<std::size_t> (old[i])]; };
+    auto &area = areas.try_emplace (vertex, Eigen::Vector3f::Zero ()).first->second;
+    area += (at (1) - at (0)).cross (at (2) - at (0));
+  }
+  for (const auto &[vertex, area] : areas)
+    if (area.norm () > 0.0f)
+      mesh.normals[static_cast<std::size_t> (vertex)] = area.normalized ();
 }
 
 } // namespace erkpa

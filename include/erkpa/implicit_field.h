@@ -251,6 +251,13 @@ public:
     return enriching_;
   }
 
+  /** \brief Where one of them stands among options ().sharp_surfaces. */
+  int
+  placeOfEnriching (int surface) const
+  {
+    return enriching_places_[static_cast<std::size_t> (surface)];
+  }
+
   /** \brief The faces that found sharp surfaces keep apart; null where there are none. */
   const FaceMap *
   faces () const
@@ -288,6 +295,7 @@ private:
   NeighborSearch::ConstPtr warped_search_;
   std::shared_ptr<const std::vector<Pencil>> pencils_;
   std::vector<SharpSurface::ConstPtr> enriching_;
+  std::vector<int> enriching_places_;
   std::shared_ptr<const FaceMap> faces_;
   double typical_radius_ = 0.0;
   double spacing_ = 0.0;

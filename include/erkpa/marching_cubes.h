@@ -22,6 +22,7 @@ struct PolygonizerOptions
   double border_offset = 0.45;   ///< an open surface ends where the nodes' centroid lies this share of the support
                                  ///< radius aside (about 0.27 on the border of evenly spread points)
   int min_component_points = 10; ///< a piece of surface that passes fewer points than this is dropped
+  bool split_normals = false;    ///< crease vertices are doubled, with the normal of each side: see splitNormals ()
   int threads = 0;               ///< 0 = all processors
 };
 

@@ -14,7 +14,7 @@ struct NormalOptions
   bool has_view_point = false;                           ///< whether the sensor's position is known
   Eigen::Vector3d view_point = Eigen::Vector3d::Zero (); ///< the sensor's position in the cloud's frame
   bool sharpen = true; ///< where sharp edges are known or sought: see refineNormals ()
-  int threads = 0;                                       ///< 0 = all processors
+  int threads = 0;     ///< 0 = all processors
 };
 
 /** \brief How estimated normals got their sign. */

@@ -38,14 +38,16 @@ struct Report
 {
   PointCounts points;
   Orientation orientation = Orientation::NONE;
-  int k = 0;           ///< neighbours of the support in force; 0 with a radius
-  double radius = 0.0; ///< support radius in force, the median where it varies; 0 with k
-  RefinedNormals normals; ///< what was done to the normals for the sake of sharp edges
+  int k = 0;                                          ///< neighbours of the support in force; 0 with a radius
+  double radius = 0.0;                                ///< support radius in force, the median where it varies; 0 with k
+  RefinedNormals normals;                             ///< what was done to the normals for the sake of sharp edges
   std::vector<SharpSurface::ConstPtr> sharp_surfaces; ///< the sharp edges that were found; not those given
   CollocationReport collocation;
   double spacing = 0.0; ///< typical distance between neighbouring points
   PolygonizerReport polygonizer;
-  MeshTopology topology;
+  MeshTopology topology;       ///< of the mesh before its normals were split
+  std::vector<Crease> creases; ///< lines over the mesh's vertices
+  std::vector<int> corners;    ///< vertices in which more than two of them meet
   std::size_t vertices = 0;
   std::size_t triangles = 0;
   double seconds_points = 0.0;      ///< gathering the points and building the search tree

@@ -3,6 +3,7 @@
 
 #include <erkpa/neighbor_search.h>
 #include <erkpa/oriented_points.h>
+#include <erkpa/sharp_edges_from_faces.h>
 #include <erkpa/sharp_surface.h>
 #include <erkpa/status.h>
 
@@ -11,11 +12,13 @@
 namespace erkpa
 {
 
-/** \brief Settings of the sharp edges that are found in the points. */
+/** \brief Settings of the sharp edges that are found in the points, beside those that are given. */
 struct SharpOptions
 {
-  bool automatic = false; ///< find sharp edges, beside those that are given
-  double angle = 25.0;    ///< edges whose faces turn by less than this many degrees are taken for smooth; in [5, 90]
+  bool automatic = false;       ///< find sharp edges
+  std::vector<FaceModel> faces; ///< faces of the solid, as segmentation finds them: see sharpEdgesFromFaces ()
+  double face_tolerance = 0.0;  ///< how far points may lie off their face, a length; 0 = half their spacing
+  double angle = 25.0; ///< edges whose faces turn by less than this many degrees are taken for smooth; in [5, 90]
 };
 
 /** \brief Find the sharp edges of a surface in points on it.

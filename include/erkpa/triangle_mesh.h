@@ -10,6 +10,13 @@
 namespace erkpa
 {
 
+/** \brief A line of mesh edges along which a surface is sharp, from a corner or its end to the next. */
+struct Crease
+{
+  int surface = -1;          ///< the sharp surface that cuts it: its place in the field's sharp surfaces
+  std::vector<int> vertices; ///< in order; the first is the last again where the line is closed
+};
+
 /** \brief Triangles over shared vertices, counter-clockwise seen from outside. */
 struct TriangleMesh
 {
@@ -18,6 +25,7 @@ struct TriangleMesh
   std::vector<std::array<int, 3>> triangles; ///< indices of vertices
   int channels = 0;                          ///< attributes per vertex
   std::vector<float> attributes;             ///< channels values per vertex, blended from the nodes
+  std::vector<Crease> creases;               ///< the mesh edges that run along creases, as lines
 
   void
   clear ()
@@ -38,6 +46,18 @@ struct MeshTopology
 /** \brief Counts edges, borders and pieces of a mesh. */
 MeshTopology
 measureTopology (const TriangleMesh &mesh);
+
+/** \brief The vertices in which more than two creases meet, sorted. */
+std::vector<int>
+findCorners (const std::vector<Crease> &creases);
+
+/** \brief Gives each smooth side of a crease vertex a vertex of its own, with the normal of that side.
+ *
+ * For those who shade by the vertices' normals. The mesh is then cut open along its creases; the lines of the creases
+ * run along one of their sides.
+ */
+void
+splitNormals (TriangleMesh &mesh);
 
 /** \brief Removes the vertices no triangle uses; the others keep their order. */
 void
