@@ -32,6 +32,9 @@ FaceGroups::assign (const Support &support)
   present_.erase (std::unique (present_.begin (), present_.end ()), present_.end ());
   if (!present_.empty () && present_.front () < 0)
     present_.erase (present_.begin ());
+  place_of_slot_.clear ();
+  for (const int face : face_of_slot_)
+    place_of_slot_.push_back (placeOf (face));
 }
 
 /** \brief The pairs of faces that meet in reach of x; true where some are apart. */
@@ -83,13 +86,7 @@ int
 FaceGroups::groupOf (int face) const
 {
   const int place = placeOf (face);
-  if (place < 0)
-    return -1;
-  const int representative = representatives_[static_cast<std::size_t> (place)];
-  for (std::size_t g = 0; g < groups_.size (); ++g)
-    if (groups_[g].representative == representative)
-      return static_cast<int> (g);
-  return -1;
+  return place < 0 ? -1 : group_of_place_[static_cast<std::size_t> (place)];
 }
 
 std::vector<const Meeting *>
@@ -112,22 +109,15 @@ FaceGroups::separationsAt (const Eigen::Vector3d &x) const
   return nearest;
 }
 
-bool
-FaceGroups::select (const Support &support, const Eigen::Vector3d &x)
+/** \brief Make the groups that have nodes in reach. */
+void
+FaceGroups::countNodes (const Support &support)
 {
-  for (Group &group : groups_)
-    spare_.push_back (std::move (group));
-  groups_.clear ();
-  if (near_.empty () || !findPairs (x))
-    return false;
-  uniteJoined ();
   const double reach = REACH * support.radius ();
   for (std::size_t slot = 0; slot < face_of_slot_.size (); ++slot)
   {
-    if (support.squaredDistance (slot) > reach * reach)
-      continue;
-    const int place = placeOf (face_of_slot_[slot]);
-    if (place < 0)
+    const int place = place_of_slot_[slot];
+    if (place < 0 || support.squaredDistance (slot) > reach * reach)
       continue;
     const int representative = representatives_[static_cast<std::size_t> (place)];
     auto group = std::find_if (groups_.begin (), groups_.end (),
@@ -144,15 +134,31 @@ FaceGroups::select (const Support &support, const Eigen::Vector3d &x)
     }
     ++group->nodes;
   }
+}
+
+bool
+FaceGroups::select (const Support &support, const Eigen::Vector3d &x)
+{
+  for (Group &group : groups_)
+    spare_.push_back (std::move (group));
+  groups_.clear ();
+  if (near_.empty () || !findPairs (x))
+    return false;
+  uniteJoined ();
+  countNodes (support);
   if (groups_.size () < 2)
     return false;
-  std::stable_sort (groups_.begin (), groups_.end (),
-                    [] (const Group &a, const Group &b) { return a.nodes > b.nodes; });
+  std::stable_sort (groups_.begin (), groups_.end (), [] (const Group &a, const Group &b) { return a.nodes > b.nodes; });
+  group_of_place_.assign (present_.size (), -1);
+  for (std::size_t place = 0; place < present_.size (); ++place)
+    for (std::size_t g = 0; g < groups_.size (); ++g)
+      if (groups_[g].representative == representatives_[place])
+        group_of_place_[place] = static_cast<int> (g);
   for (Group &group : groups_)
     group.members.assign (face_of_slot_.size (), 0);
   for (std::size_t slot = 0; slot < face_of_slot_.size (); ++slot)
   {
-    const int group = groupOf (face_of_slot_[slot]);
+    const int group = groupOfSlot (static_cast<int> (slot));
     if (group >= 0)
       groups_[static_cast<std::size_t> (group)].members[slot] = 1;
   }

@@ -63,7 +63,8 @@ public:
   int
   groupOfSlot (int slot) const
   {
-    return groupOf (face_of_slot_[static_cast<std::size_t> (slot)]);
+    const int place = place_of_slot_[static_cast<std::size_t> (slot)];
+    return place < 0 ? -1 : group_of_place_[static_cast<std::size_t> (place)];
   }
 
   /** \brief Face of a gathered value point; -1 for none. */
@@ -93,6 +94,9 @@ private:
   void
   uniteJoined ();
 
+  void
+  countNodes (const Support &support);
+
   int
   placeOf (int face) const;
 
@@ -100,7 +104,9 @@ private:
   std::vector<int> near_; // meetings
   std::vector<int> face_of_slot_;
   std::vector<int> present_;         // faces of the gathered value points, sorted
+  std::vector<int> place_of_slot_;   // in present_, -1 for none
   std::vector<int> representatives_; // of present_
+  std::vector<int> group_of_place_;  // of present_
   std::vector<Pair> pairs_;
   std::vector<Group> groups_, spare_;
 };

@@ -121,7 +121,8 @@ FaceMap::assignNodes (const OrientedPoints &points, double spacing)
 void
 FaceMap::findJoints (const OrientedPoints &points, const NeighborSearch &search, double spacing)
 {
-  constexpr double NEIGHBORS = 1.6;     // spacings
+  constexpr double NEIGHBORS = 4.0;     // spacings
+  constexpr float BEND = 0.1f;          // of the distance: a larger step is that between two sheets
   constexpr float LEAST_COSINE = 0.87f; // 30 degrees
   std::vector<int> found, near;
   std::vector<float> squared;
@@ -138,7 +139,10 @@ FaceMap::findJoints (const OrientedPoints &points, const NeighborSearch &search,
       const float turn = points.normals[i].dot (points.normals[static_cast<std::size_t> (j)]);
       if (j <= static_cast<int> (i) || other < 0 || face == other)
         continue;
-      if (turn < LEAST_COSINE)
+      const Eigen::Vector3f way = points.positions[static_cast<std::size_t> (j)] - points.positions[i];
+      const float step =
+          0.5f * std::abs (way.dot (points.normals[i] + points.normals[static_cast<std::size_t> (j)]));
+      if (turn < LEAST_COSINE || step > BEND * way.norm ())
         continue;
       const Eigen::Vector3f middle = 0.5f * (points.positions[i] + points.positions[static_cast<std::size_t> (j)]);
       meetingsNear (middle.cast<double> (), 0.0, near);

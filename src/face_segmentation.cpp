@@ -39,16 +39,34 @@ angleBetween (const Eigen::Vector3d &a, const Eigen::Vector3d &b)
   return std::atan2 (a.cross (b).norm (), a.dot (b));
 }
 
-/** \brief Whether two nodes fit to one smooth surface: similar normals, and across them no step. */
+/** \brief Whether two nodes fit to one smooth surface: similar normals, and across them no step.
+ * \param[in] bend how large a step may be as a share of the distance; that of a circular arc is zero
+ */
+bool
+areSmooth (const OrientedPoints &points, const SegmentationOptions &options, int i, int j, double angle, double bend)
+{
+  const Eigen::Vector3d n = normalOf (points, i), m = normalOf (points, j);
+  if (n.dot (m) < std::cos (angle))
+    return false;
+  const Eigen::Vector3d way = positionOf (points, j) - positionOf (points, i);
+  return 0.5 * std::abs (way.dot (n + m)) <= std::max (bend * way.norm (), options.chord);
+}
+
 bool
 areSmooth (const OrientedPoints &points, const SegmentationOptions &options, int i, int j)
 {
-  constexpr double BEND = 0.2; // of the distance: the step of a circular arc is zero
-  const Eigen::Vector3d n = normalOf (points, i), m = normalOf (points, j);
-  if (n.dot (m) < std::cos (options.angle))
-    return false;
-  const Eigen::Vector3d way = positionOf (points, j) - positionOf (points, i);
-  return 0.5 * std::abs (way.dot (n + m)) <= std::max (BEND * way.norm (), options.chord);
+  return areSmooth (points, options, i, j, options.angle, 0.2);
+}
+
+/** \brief Whether to link two nodes. Those farther apart must agree better: they bridge gaps in narrow faces. */
+bool
+areLinked (const OrientedPoints &points, const SegmentationOptions &options, int i, int j)
+{
+  constexpr double BRIDGE_ANGLE = 0.7, BRIDGE_BEND = 0.08;
+  const double distance = (positionOf (points, j) - positionOf (points, i)).norm ();
+  const bool is_near = distance <= options.link_reach * options.spacing;
+  return is_near ? areSmooth (points, options, i, j)
+                 : areSmooth (points, options, i, j, BRIDGE_ANGLE * options.angle, BRIDGE_BEND);
 }
 
 /** \brief Links every node with the neighbours it is smooth with, and tells which nodes have others, too. */
@@ -63,7 +81,7 @@ linkNeighbors (const OrientedPoints &points, const NeighborSearch &search, const
     std::vector<int> nodes;
     std::vector<float> squared;
   };
-  const double reach = options.link_reach * options.spacing;
+  const double reach = options.bridge_reach * options.spacing;
   const double far = std::max (reach, options.separation_reach);
   parallelFor (
       points.size (), threads, [] { return Found (); },
@@ -76,11 +94,11 @@ linkNeighbors (const OrientedPoints &points, const NeighborSearch &search, const
           const int node = static_cast<int> (i);
           if (j == node)
             continue;
-          const bool smooth = areSmooth (points, options, node, j);
-          if (!smooth)
-            is_suspect[i] = 1;
-          else if ((points.positions[static_cast<std::size_t> (j)] - points.positions[i]).norm () <= reach)
+          const double distance = (positionOf (points, j) - positionOf (points, node)).norm ();
+          if (distance <= reach && areLinked (points, options, node, j))
             links[i].push_back (j);
+          else if (distance <= std::max (options.separation_reach, options.link_reach * options.spacing))
+            is_suspect[i] = 1;
         }
       });
   return links;

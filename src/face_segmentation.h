@@ -33,6 +33,7 @@ struct SegmentationOptions
   double angle = 0.44;         ///< largest angle between the normals of neighbours on one face, radians
   double chord = 0.0;          ///< how far noise may move two neighbours off a common smooth curve, a length
   double link_reach = 2.5;     ///< how far neighbours may be apart, in spacings
+  double bridge_reach = 5.0;   ///< the same for those that agree much better, in spacings
   double separation_reach = 0; ///< how far nodes see each other across a crease or a wall, a length
   int ball = 64;               ///< nodes in which the faces around a node are told apart
   int smallest = 2;            ///< a face of fewer nodes within a ball is none

@@ -108,18 +108,34 @@ struct Stretch
   double reach = 0.0;
 };
 
-/** \brief Gathers separations into stretches; those too short to be an edge are dropped, close places thinned out. */
+/** \brief One separation of two faces for each cell of a grid. */
+std::vector<Separation>
+thinOut (const std::vector<Separation> &separations, double cell)
+{
+  std::set<std::tuple<int, int, long, long, long>> taken;
+  std::vector<Separation> thinned;
+  for (const Separation &separation : separations)
+  {
+    const Eigen::Vector3f place = (separation.position / cell).array ().round ();
+    const auto number = [&place] (int axis) { return std::lround (place[axis]); };
+    if (taken.emplace (separation.face, separation.other, number (0), number (1), number (2)).second)
+      thinned.push_back (separation);
+  }
+  return thinned;
+}
+
+/** \brief Gathers separations into stretches; those too short to be an edge are dropped. */
 std::vector<Stretch>
-gatherStretches (const OrientedPoints &points, const NeighborSearch &search, const std::vector<Separation> &separations,
+gatherStretches (const OrientedPoints &points, const NeighborSearch &search, const std::vector<Separation> &all,
                  const SegmentationOptions &options, int k)
 {
   constexpr double STEP = 0.5, REACH = 1.1; // spacings; support radii
   const double shortest = (k > CLEAN_SUPPORT ? 4.0 : 2.0) * options.spacing;
+  const std::vector<Separation> separations = thinOut (all, STEP * options.spacing);
   DisjointSets chains = chainSeparations (separations, options.link_reach * options.spacing);
   const std::map<int, float> lengths = lengthsOf (separations, chains);
   std::map<int, std::size_t> numbers;
   std::vector<Stretch> stretches;
-  std::set<std::tuple<std::size_t, long, long, long>> taken;
   std::vector<int> nearest;
   std::vector<float> squared;
   for (std::size_t i = 0; i < separations.size (); ++i)
@@ -130,10 +146,6 @@ gatherStretches (const OrientedPoints &points, const NeighborSearch &search, con
     const auto [number, is_new] = numbers.try_emplace (chain, stretches.size ());
     if (is_new)
       stretches.push_back ({separations[i].face, separations[i].other, {}, 0.0});
-    const Eigen::Vector3f cell = (separations[i].position / (STEP * options.spacing)).array ().round ();
-    if (!taken.emplace (number->second, std::lround (cell.x ()), std::lround (cell.y ()), std::lround (cell.z ()))
-             .second)
-      continue;
     Stretch &stretch = stretches[number->second];
     stretch.places.emplace_back (separations[i].position.cast<double> () + points.origin);
     search.nearestK (separations[i].position, k, nearest, squared);
