@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "feature_loops.h"
 
+#include "crease_solver.h"
 #include "threads.h"
 
 #include <Eigen/Geometry>
@@ -37,7 +38,12 @@ public:
     if (result.crossings.empty ())
       return;
     result.position = minimizeDistances (loop, middle);
-    result.has_center = solve (middle, result.position);
+    std::vector<Side> sides;
+    for (const int v : sides_)
+      sides.push_back (sideOf (v));
+    result.has_center =
+        moveToCrease (local_, sides, options_.iso_level, REACH * voxel_, TOLERANCE * voxel_, result.position) &&
+        (result.position - middle).norm () < REACH * voxel_;
     if (result.has_center)
       describeCenter (result);
   }
@@ -50,6 +56,7 @@ public:
 
 private:
   static constexpr double LEAST_TURN = 0.07; // radians, 4 degrees: what turns less is no crease
+  static constexpr double TOLERANCE = 1e-5;  // voxels
   static constexpr double REACH = 2.5;       // voxels that a vertex may be away from the middle of its loop
 
   const Eigen::Vector3d &
@@ -122,37 +129,6 @@ private:
     const double length = step.norm ();
     const double limit = 1.5 * voxel_;
     return middle + (length > limit ? limit / length : 1.0) * step;
-  }
-
-  /** \brief Newton steps of least norm to f = iso on all sides. */
-  bool
-  solve (const Eigen::Vector3d &middle, Eigen::Vector3d &x)
-  {
-    constexpr int STEPS = 10;
-    const auto count = static_cast<Eigen::Index> (sides_.size ());
-    Eigen::Matrix<double, Eigen::Dynamic, 3> gradients (count, 3);
-    Eigen::VectorXd values (count);
-    for (int step = 0; step < STEPS; ++step)
-    {
-      for (Eigen::Index i = 0; i < count; ++i)
-      {
-        const LocalSample sample = local_.sampleOnSide (x, sideOf (sides_[static_cast<std::size_t> (i)]));
-        if (!sample.isDefined ())
-          return false;
-        values[i] = options_.iso_level - sample.value;
-        gradients.row (i) = sample.gradient.transpose ();
-      }
-      Eigen::JacobiSVD<Eigen::Matrix<double, Eigen::Dynamic, 3>> svd (gradients,
-                                                                      Eigen::ComputeThinU | Eigen::ComputeThinV);
-      svd.setThreshold (0.05);
-      const Eigen::Vector3d move = svd.solve (values);
-      x += move;
-      if (!((x - middle).norm () < REACH * voxel_))
-        return false;
-      if (move.norm () < 1e-5 * voxel_)
-        return true;
-    }
-    return values.norm () < 0.1 * voxel_;
   }
 
   /** \brief The normal of a crease vertex is the mean of its faces' normals. */

@@ -13,6 +13,7 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <utility>
 
 namespace erkpa
 {
@@ -73,11 +74,13 @@ public:
 
   /** \brief From now on give f as if walls and gaps between faces were at least so thick (a length before the warp).
    *
-   * A grid then sees both sides of the thinnest wall. Vertices found so belong on the piece of f of their face. */
-  void
+   * A grid then sees both sides of the thinnest wall. Vertices found so belong on the piece of f of their face.
+   * \return what was in force before
+   */
+  double
   thicken (double least_wall)
   {
-    least_wall_ = least_wall;
+    return std::exchange (least_wall_, least_wall);
   }
 
   /** \brief How much a wall was thickened on either side at the point last evaluated. */

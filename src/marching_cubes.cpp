@@ -8,6 +8,7 @@
 #include "crease_lines.h"
 #include "feature_loops.h"
 #include "mesh_graph.h"
+#include "sliver_removal.h"
 #include "sparse_grid.h"
 #include "surface_tracking.h"
 #include "surface_vertices.h"
@@ -228,7 +229,7 @@ polygonize (const ImplicitField &field, const PolygonizerOptions &options, Trian
   meshCentered (cell_mesh.centered_loops, triangles, vertices);
   projectVertices (field, options, on_edges, 0.3 * voxel, vertices, report);
   const std::vector<MeshedLoop> loops = meshLoops (field, options, cell_mesh.mixed_loops, voxel, vertices, report);
-  const std::vector<VertexPair> creases = addCreases (cell_mesh.mixed_loops, loops, triangles, vertices);
+  std::vector<VertexPair> creases = addCreases (cell_mesh.mixed_loops, loops, triangles, vertices);
   const std::size_t in_cells = vertices.positions.size ();
   trimBorder (options.border_offset, triangles, vertices);
   projectVertices (field, options, in_cells, 0.1 * voxel, vertices, report);
@@ -239,6 +240,7 @@ polygonize (const ImplicitField &field, const PolygonizerOptions &options, Trian
     return noSurface (field, voxel, report.dropped_components);
   splitFans (triangles, vertices);
   fillNormals (triangles, vertices);
+  removeSlivers (voxel, creases, triangles, vertices);
   std::vector<Crease> lines = traceCreases (field, options, creases, triangles, vertices);
   mesh = toInputFrame (field.points (), vertices, triangles, std::move (lines));
   return {};

@@ -8,7 +8,10 @@
 #include "normal_smoothing.h"
 #include "text.h"
 
+#include <Eigen/Geometry>
+
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <map>
 #include <set>
@@ -108,6 +111,71 @@ struct Stretch
   double reach = 0.0;
 };
 
+/** \brief Tells sharp edges from tight folds of a smooth surface.
+ *
+ * At an edge the normals of a face are those they were a little further off; in a fold they turn towards the other face
+ * already.
+ */
+class FoldTest
+{
+public:
+  FoldTest (const OrientedPoints &points, const NeighborSearch &search, const std::vector<int> &faces, double spacing)
+      : points_ (points), search_ (search), faces_ (faces), spacing_ (spacing)
+  {
+  }
+
+  bool
+  isFold (const Stretch &stretch)
+  {
+    constexpr double MOST = 0.22; // share of the turn between the faces, by which each turns near the edge
+    double turns = 0.0, of = 0.0;
+    for (const Eigen::Vector3d &place : stretch.places)
+      visit ((place - points_.origin).cast<float> (), stretch, turns, of);
+    return turns > MOST * of;
+  }
+
+private:
+  void
+  visit (const Eigen::Vector3f &place, const Stretch &stretch, double &turns, double &of)
+  {
+    constexpr double NEAR = 1.5, FAR = 3.0; // spacings
+    search_.withinRadius (place, FAR * spacing_, found_, squared_);
+    std::array<Eigen::Vector3f, 2> normals{Eigen::Vector3f::Zero (), Eigen::Vector3f::Zero ()};
+    const auto side_of = [&] (std::size_t i)
+    {
+      const int face = faces_[static_cast<std::size_t> (found_[i])];
+      return face == stretch.face ? 0 : face == stretch.other ? 1 : -1;
+    };
+    const auto normal = [&] (std::size_t i) { return points_.normals[static_cast<std::size_t> (found_[i])]; };
+    const auto is_near = [&] (std::size_t i) { return squared_[i] < NEAR * NEAR * spacing_ * spacing_; };
+    for (std::size_t i = 0; i < found_.size (); ++i)
+      if (side_of (i) >= 0 && !is_near (i))
+        normals[static_cast<std::size_t> (side_of (i))] += normal (i);
+    if (normals[0].isZero () || normals[1].isZero ())
+      return;
+    const double turn = angleBetween (normals[0], normals[1]);
+    for (std::size_t i = 0; i < found_.size (); ++i)
+      if (side_of (i) >= 0 && is_near (i))
+      {
+        turns += angleBetween (normal (i), normals[static_cast<std::size_t> (side_of (i))]);
+        of += turn;
+      }
+  }
+
+  static double
+  angleBetween (const Eigen::Vector3f &a, const Eigen::Vector3f &b)
+  {
+    return std::atan2 (a.cross (b).norm (), a.dot (b));
+  }
+
+  const OrientedPoints &points_;
+  const NeighborSearch &search_;
+  const std::vector<int> &faces_;
+  double spacing_;
+  std::vector<int> found_;
+  std::vector<float> squared_;
+};
+
 /** \brief One separation of two faces for each cell of a grid. */
 std::vector<Separation>
 thinOut (const std::vector<Separation> &separations, double cell)
@@ -124,14 +192,14 @@ thinOut (const std::vector<Separation> &separations, double cell)
   return thinned;
 }
 
-/** \brief Gathers separations into stretches; those too short to be an edge are dropped. */
+/** \brief Gathers separations into stretches; those too short to be an edge and folds are dropped. */
 std::vector<Stretch>
-gatherStretches (const OrientedPoints &points, const NeighborSearch &search, const std::vector<Separation> &all,
+gatherStretches (const OrientedPoints &points, const NeighborSearch &search, const FaceSegmentation &found,
                  const SegmentationOptions &options, int k)
 {
   constexpr double STEP = 0.5, REACH = 1.1; // spacings; support radii
   const double shortest = (k > CLEAN_SUPPORT ? 4.0 : 2.0) * options.spacing;
-  const std::vector<Separation> separations = thinOut (all, STEP * options.spacing);
+  const std::vector<Separation> separations = thinOut (found.separations, STEP * options.spacing);
   DisjointSets chains = chainSeparations (separations, options.link_reach * options.spacing);
   const std::map<int, float> lengths = lengthsOf (separations, chains);
   std::map<int, std::size_t> numbers;
@@ -152,6 +220,10 @@ gatherStretches (const OrientedPoints &points, const NeighborSearch &search, con
     const double radius = std::sqrt (static_cast<double> (*std::max_element (squared.begin (), squared.end ())));
     stretch.reach = std::max (stretch.reach, REACH * radius);
   }
+  FoldTest test (points, search, found.faces, options.spacing);
+  stretches.erase (std::remove_if (stretches.begin (), stretches.end (),
+                                   [&] (const Stretch &stretch) { return test.isFold (stretch); }),
+                   stretches.end ());
   return stretches;
 }
 
@@ -195,7 +267,7 @@ findSharpSurfaces (const OrientedPoints &points, const NeighborSearch &search, c
   const int k = chooseSupportSize (points, search);
   const SegmentationOptions segmentation = optionsFor (points, search, options.angle, k, threads);
   const FaceSegmentation found = segmentFaces (points, search, segmentation, threads);
-  const std::vector<Stretch> stretches = gatherStretches (points, search, found.separations, segmentation, k);
+  const std::vector<Stretch> stretches = gatherStretches (points, search, found, segmentation, k);
   const std::vector<SharpSurface::ConstPtr> faces = makeFaces (points, found, markNear (points, stretches), k);
   for (const Stretch &stretch : stretches)
   {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "surface_vertices.h"
 
+#include "crease_solver.h"
 #include "surface_tracking.h"
 #include "threads.h"
 
@@ -73,24 +74,33 @@ storeVertex (const LocalField &local, const LocalSample &sample, const Eigen::Ve
     local.blendAttributes (&vertices.attributes[vertex * static_cast<std::size_t> (channels)]);
 }
 
-/** \brief Moves a vertex of a thickened wall to the piece of f of its face. */
+/** \brief Moves a vertex of a thickened wall to the piece of f of its face; to the edge of the wall where that lies
+ * beyond it. */
 void
 moveToFace (LocalField &local, const PolygonizerOptions &options, double voxel, std::size_t vertex,
             SurfaceVertices &vertices)
 {
+  constexpr double REACH = 1.5, BEYOND = 0.02; // voxels
   const Eigen::Vector3d start = vertices.positions[vertex];
-  for (int step = 0; step < MAX_STEPS; ++step)
+  Eigen::Vector3d position = start;
+  std::vector<Side> sides{{vertices.faces[vertex], start}};
+  const auto move = [&]
+  { return moveToCrease (local, sides, options.iso_level, REACH * voxel, TOLERANCE * voxel, position); };
+  if (!move ())
+    return;
+  const double least_wall = local.thicken (0.0);
+  const LocalSample there = local.sample (position);
+  local.thicken (least_wall);
+  if (std::abs (there.value - options.iso_level) > BEYOND * voxel && local.face () != vertices.faces[vertex])
   {
-    const LocalSample sample = local.sampleOnSide (vertices.positions[vertex], {vertices.faces[vertex], start});
-    const double slope = sample.gradient.squaredNorm ();
-    if (!sample.isDefined () || !(slope > 0.0))
+    sides.push_back ({local.face (), position});
+    if (!move ())
       return;
-    vertices.normals[vertex] = sample.gradient / std::sqrt (slope);
-    const Eigen::Vector3d move = (options.iso_level - sample.value) / slope * sample.gradient;
-    if (!((vertices.positions[vertex] + move - start).norm () < voxel) || move.norm () < TOLERANCE * voxel)
-      return;
-    vertices.positions[vertex] += move;
   }
+  vertices.positions[vertex] = position;
+  const LocalSample piece = local.sampleOnSide (position, sides.front ());
+  if (piece.isDefined () && piece.gradient.norm () > 0.0)
+    vertices.normals[vertex] = piece.gradient.normalized ();
 }
 
 } // namespace

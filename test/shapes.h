@@ -103,7 +103,28 @@ box (int count, const Eigen::Vector3d &half, unsigned seed = 5)
   return samples;
 }
 
-/** \brief The planes that halve the twelve edges of that box, as a, b, c, d. */
+/** \brief Points spread at random, evenly by area, over a cylinder with its two caps, around the z axis. */
+inline Samples
+tin (int count, double radius, double half_height, unsigned seed = 5)
+{
+  std::mt19937 random (seed);
+  std::uniform_real_distribution<double> unit (0.0, 1.0);
+  const double share_of_caps = radius / (radius + 2.0 * half_height);
+  Samples samples;
+  for (int i = 0; i < count; ++i)
+  {
+    const double turn = 2.0 * M_PI * unit (random), part = unit (random), place = unit (random);
+    const Eigen::Vector3d out (std::cos (turn), std::sin (turn), 0.0), up = Eigen::Vector3d::UnitZ ();
+    const double side = unit (random) < 0.5 ? -1.0 : 1.0;
+    if (part < share_of_caps)
+      samples.add (radius * std::sqrt (place) * out + side * half_height * up, side * up);
+    else
+      samples.add (radius * out + (2.0 * place - 1.0) * half_height * up, out);
+  }
+  return samples;
+}
+
+/** \brief The planes that halve the twelve edges of the box, as a, b, c, d. */
 inline std::vector<Eigen::Vector4d>
 boxBisectors (const Eigen::Vector3d &half)
 {

@@ -1,14 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <erkpa/settings.h>
+#include <erkpa/sharp_edge_settings.h>
 
-#include <pcl/ModelCoefficients.h>
 #include <pcl/PolygonMesh.h>
 #include <pcl/point_types.h>
-#include <pcl/sample_consensus/model_types.h>
 #include <pcl/surface/reconstruction.h>
 
+#include <string>
 #include <vector>
 
 namespace erkpa
@@ -22,10 +21,10 @@ namespace erkpa
  * erkpa.setInputCloud (cloud);
  * erkpa.reconstruct (mesh);
  * \endcode
- * Every setting has a default that gives a good mesh; settings.h lists them. Sharp edges are made where planes given by
- * addSharpEdge () cut the surface. Points without usable normals get estimated ones. Nothing is thrown across
- * reconstruct: on failure one PCL_ERROR names the input or setting, getStatus () tells the kind, and the output is
- * empty.
+ * Every setting has a default that gives a good mesh; settings.h and sharp_edge_settings.h list them. Sharp edges are
+ * made where planes given by addSharpEdge () cut the surface, and where setAutomaticSharpEdges () lets them be found in
+ * the points. Points without usable normals get estimated ones. Nothing is thrown across reconstruct: on failure one
+ * PCL_ERROR names the input or setting, getStatus () tells the kind, and the output is empty.
  *
  * P. Reuter, P. Joyot, J. Trunzler, T. Boubekeur, C. Schlick: Reconstructing Implicit Surfaces with Sharp Edges via
  * Enriched Reproducing Kernel Approximation, RR-1334-04, LaBRI, 2004.
@@ -33,7 +32,7 @@ namespace erkpa
  * \tparam PointNT a point type with x, y, z; normals, colour and intensity are used where the type has them
  */
 template <typename PointNT>
-class ERKPA : public pcl::SurfaceReconstruction<PointNT>, public Settings
+class ERKPA : public pcl::SurfaceReconstruction<PointNT>, public SharpEdgeSettings
 {
 public:
   using Ptr = pcl::shared_ptr<ERKPA<PointNT>>;
@@ -98,54 +97,37 @@ public:
     shapes_ = shapes;
   }
 
-  /** \brief Make the surface sharp where it crosses a plane.
-   * \param[in] coefficients a, b, c, d of a x + b y + c z + d = 0, of any scale: the plane that halves the edge
-   * \return false, with a PCL_ERROR, where there are not four finite values or a = b = c = 0
+  /** \brief The sharp surfaces that the last call found, between faces and in the points; not those given.
+   *
+   * They can be looked at, and given back with setSharpSurfaces () where some are not wanted; with nothing more to be
+   * found (setAutomaticSharpEdges (false), clearFaces ()) all of them give the same mesh.
    */
-  bool
-  addSharpEdge (const pcl::ModelCoefficients &coefficients);
-
-  /** \brief The same with another surface than a plane.
-   * \param[in] coefficients those of the model, as PCL's sample consensus gives them
-   * \param[in] model pcl::SACMODEL_PLANE, SACMODEL_SPHERE, SACMODEL_CYLINDER or SACMODEL_CONE, or one of their kin with
-   * the same coefficients (SACMODEL_NORMAL_PLANE, ...)
-   * \return false, with a PCL_ERROR, where they make no surface
-   */
-  bool
-  addSharpEdge (const pcl::ModelCoefficients &coefficients, pcl::SacModel model);
-
-  /** \brief Make the edge sharp in which two faces meet: see makeSharpBetween (). The rim of a cylinder, for example.
-   * \param[in] face coefficients of a face; the normal of a plane points out of the solid. The signed distance to a
-   * sphere, cylinder or cone is positive outside it, so that it must be the outside of a boss, not of a hole
-   * \param[in] model its model, as above
-   * \param[in] other, other_model the other face
-   * \return false, with a PCL_ERROR, where they make no surface
-   */
-  bool
-  addSharpEdge (const pcl::ModelCoefficients &face, pcl::SacModel model, const pcl::ModelCoefficients &other,
-                pcl::SacModel other_model);
-
-  /** \brief The same with any surface; null is ignored. */
-  void
-  addSharpSurface (const SharpSurface::ConstPtr &surface);
-
-  /** \brief Replace all sharp edges by planes; on a bad one none is changed, and false is returned. */
-  bool
-  setSharpEdges (std::vector<pcl::ModelCoefficients> edges);
-
-  /** \brief The planes given. */
-  const std::vector<pcl::ModelCoefficients> &
-  getSharpEdges () const
+  const std::vector<SharpSurface::ConstPtr> &
+  getFoundSharpSurfaces () const
   {
-    return sharp_edges_;
+    return report_.sharp_surfaces;
   }
 
-  /** \brief Forget the sharp edges, planes and others. */
-  void
-  clearSharpEdges ()
+  /** \brief Save the sharp surfaces that were in force in the last call, given and found, in this order; those given
+   * where it has failed or there was none. See sharp_surface_io.h.
+   * \return false, with a PCL_ERROR, where they cannot be written
+   */
+  bool
+  saveSharpSurfaces (const std::string &path) const;
+
+  /** \brief The creases of the last mesh as lines of its vertices. The surface of a crease is a place in
+   * getSharpSurfaces () as they were, and beyond its end in getFoundSharpSurfaces (). */
+  const std::vector<Crease> &
+  getCreases () const
   {
-    sharp_edges_.clear ();
-    options_.field.sharp_surfaces.clear ();
+    return report_.creases;
+  }
+
+  /** \brief The vertices of the last mesh in which more than two creases meet. */
+  const std::vector<int> &
+  getCorners () const
+  {
+    return report_.corners;
   }
 
   /** \brief How the last call ended. */
@@ -218,13 +200,8 @@ private:
   Outcome
   viewInput (PointView &view) const;
 
-  /** \brief The surface that coefficients describe; null, with a PCL_ERROR, where there is none. */
-  SharpSurface::ConstPtr
-  sharpSurfaceOf (const pcl::ModelCoefficients &coefficients, pcl::SacModel model) const;
-
   std::vector<float> radii_, confidences_;
   std::vector<Eigen::Matrix3f> shapes_;
-  std::vector<pcl::ModelCoefficients> sharp_edges_;
   ProgressCallback progress_;
 
   ImplicitField::ConstPtr field_;

@@ -2,9 +2,11 @@
 #include "command_line.h"
 
 #include "cloud_reader.h"
+#include "crease_writer.h"
 #include "mesh_writer.h"
 #include "option_list.h"
 #include "option_values.h"
+#include "sharp_options.h"
 
 #include <algorithm>
 #include <sstream>
@@ -29,34 +31,6 @@ fileNames (const po::parsed_options &parsed)
     if (option.string_key.empty ())
       names.insert (names.end (), option.value.begin (), option.value.end ());
   return names;
-}
-
-/** \brief Gives \a take the text of an option that was given. */
-template <typename TakeT>
-void
-ifGiven (const po::variables_map &variables, const char *name, TakeT take)
-{
-  if (variables.count (name) > 0)
-    take (OptionText{name, variables[name].as<std::string> ()});
-}
-
-/** \brief The sharp surfaces given by an option that may be repeated. */
-void
-takeSharpSurfaces (const po::variables_map &variables, const char *name, const char *form, SurfaceModel model,
-                   FieldOptions &field)
-{
-  if (variables.count (name) == 0)
-    return;
-  for (const std::string &text : variables[name].as<std::vector<std::string>> ())
-  {
-    const OptionText option{name, text};
-    const std::vector<double> numbers = toNumbers (option, form);
-    SharpSurface::ConstPtr surface;
-    const Outcome outcome = makeSharpSurface (model, std::vector<float> (numbers.begin (), numbers.end ()), surface);
-    if (!outcome.ok ())
-      option.refuse (outcome.message);
-    field.sharp_surfaces.push_back (surface);
-  }
 }
 
 RadiusRamp
@@ -96,17 +70,6 @@ takeField (const po::variables_map &variables, FieldOptions &field)
   ifGiven (variables, "offset", [&] (const OptionText &o) { field.offset = toNumber (o); });
   ifGiven (variables, "interpolate", [&] (const OptionText &o) { field.interpolation = toEnum (o, INTERPOLATIONS); });
   ifGiven (variables, "enrichment", [&] (const OptionText &o) { field.enrichment = toEnum (o, ENRICHMENTS); });
-  takeSharpSurfaces (variables, "sharp", "a,b,c,d", SurfaceModel::PLANE, field);
-  takeSharpSurfaces (variables, "sharp_sphere", "x,y,z,r", SurfaceModel::SPHERE, field);
-  takeSharpSurfaces (variables, "sharp_cylinder", "x,y,z,dx,dy,dz,r", SurfaceModel::CYLINDER, field);
-  takeSharpSurfaces (variables, "sharp_cone", "x,y,z,dx,dy,dz,angle", SurfaceModel::CONE, field);
-}
-
-void
-takeSharpEdges (const po::variables_map &variables, SharpOptions &sharp)
-{
-  sharp.automatic = variables["sharp_auto"].as<bool> ();
-  ifGiven (variables, "sharp_angle", [&] (const OptionText &o) { sharp.angle = toNumber (o); });
 }
 
 void
@@ -156,13 +119,41 @@ takeFileNames (const std::vector<std::string> &names, CommandLine &line)
   if (!line.query.empty () && !isReadable (line.query))
     throw ToolError ("option -evaluate: cannot read " + line.query + ": the format is unknown; use one of " +
                      readableFormats ());
-  const bool repeats = (!line.output.empty () && (line.report == line.output || line.values == line.output)) ||
-                       (!line.report.empty () && line.report == line.values);
-  const bool overwrites = !line.values.empty () && (line.values == line.query || line.values == line.input);
-  if (overwrites)
-    throw ToolError ("option -evaluate would write over " + line.values + ", which it reads; give another name");
-  if (repeats)
-    throw ToolError ("OUTPUT, -report and -evaluate must not write the same file; give them different names");
+}
+
+/** \brief A file that one option names, to read or to write. */
+struct NamedFile
+{
+  const char *option;
+  const std::string &path;
+};
+
+/** \brief What is written must not be written twice, nor over what is read. */
+void
+checkFileNames (const CommandLine &line)
+{
+  const NamedFile written[] = {{"OUTPUT", line.output},
+                               {"-report", line.report},
+                               {"-evaluate", line.values},
+                               {"-save_sharp_edges", line.saved_sharp_edges},
+                               {"-creases", line.creases}};
+  for (const NamedFile &file : written)
+    for (const NamedFile &other : written)
+      if (&file < &other && !file.path.empty () && file.path == other.path)
+        throw ToolError (std::string (file.option) + " and " + other.option +
+                         " must not write the same file; give them different names");
+  for (const NamedFile &file : written)
+    for (const std::string *read : {&line.input, &line.query, &line.sharp_edges})
+      if (&file.path != &line.output && !file.path.empty () && file.path == *read)
+        throw ToolError (std::string ("option ") + file.option + " would write over " + file.path +
+                         ", which is read; give another name");
+  if (line.creases.empty ())
+    return;
+  if (!isWritableForCreases (line.creases))
+    throw ToolError ("cannot write " + line.creases + ": the format is unknown; use one of " +
+                     writableCreaseFormats ());
+  if (line.output.empty ())
+    throw ToolError ("option -creases: there are no creases without a mesh; name an OUTPUT");
 }
 
 } // namespace
@@ -194,12 +185,13 @@ parseCommandLine (int argc, const char *const *argv)
           refuseBoth (variables, one, other);
     takeSupport (variables, line.options);
     takeField (variables, line.options.field);
-    takeSharpEdges (variables, line.options.sharp);
+    takeSharpEdges (variables, line);
     takeMeshing (variables, line);
     const Outcome outcome = ImplicitField::checkOptions (line.options.field);
     if (!outcome.ok ())
       throw ToolError (outcome.message);
     takeFileNames (fileNames (parsed), line);
+    checkFileNames (line);
   }
   catch (const po::error &error)
   {

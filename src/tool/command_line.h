@@ -14,10 +14,13 @@ struct CommandLine
   bool help = false;
   bool version = false;
   std::string input;
-  std::string output; ///< empty: no mesh is wanted
-  std::string query;  ///< -evaluate, first value
-  std::string values; ///< -evaluate, second value
-  std::string report; ///< -report
+  std::string output;            ///< empty: no mesh is wanted
+  std::string query;             ///< -evaluate, first value
+  std::string values;            ///< -evaluate, second value
+  std::string report;            ///< -report
+  std::string sharp_edges;       ///< -sharp_edges, which options have already
+  std::string saved_sharp_edges; ///< -save_sharp_edges
+  std::string creases;           ///< -creases
   Options options;
 };
 

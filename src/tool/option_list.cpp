@@ -103,7 +103,15 @@ describeField (const FieldOptions &field)
       ("interpolate", word ("NAME"),
        withDefault (listNames (INTERPOLATIONS) + ": how the surface is made to pass through the points",
                     nameOf (INTERPOLATIONS, field.interpolation))
-           .c_str ()) //
+           .c_str ());
+  return description;
+}
+
+po::options_description
+describeSharpEdges (const Options &options)
+{
+  po::options_description description;
+  description.add_options () //
       ("sharp", words ("a,b,c,d"),
        "a sharp edge where the plane a x + b y + c z + d = 0 cuts the surface; may be repeated (default: none)") //
       ("sharp_sphere", words ("x,y,z,r"), "the same with a sphere: center and radius (default: none)")           //
@@ -111,12 +119,25 @@ describeField (const FieldOptions &field)
        "the same with a cylinder: point on the axis, direction of the axis, radius (default: none)") //
       ("sharp_cone", words ("x,y,z,dx,dy,dz,angle"),
        "the same with a cone: apex, direction of the axis, angle between axis and side in radians (default: none)") //
+      ("sharp_edges", word ("FILE.json"), "sharp edges from a file that -save_sharp_edges wrote (default: none)")   //
+      ("face", words ("a,b,c,d"),
+       "a face of the solid, in the plane a x + b y + c z + d = 0: sharp edges where faces meet in the points; may be "
+       "repeated (default: none)") //
+      ("face_tolerance", word ("T"),
+       withDefault ("how far points may lie off their face", options.sharp.face_tolerance, "half their spacing")
+           .c_str ())                                                                     //
       ("sharp_auto", po::bool_switch (), "find sharp edges in the points (default: not)") //
       ("sharp_angle", word ("DEGREES"),
-       withDefault ("edges that turn by less are taken for smooth", SharpOptions ().angle).c_str ()) //
+       withDefault ("edges found in the points turn by at least this, 5 to 90", options.sharp.angle).c_str ()) //
+      ("save_sharp_edges", word ("FILE.json"),
+       "also write all sharp edges, those given and those found (default: none)") //
+      ("creases", word ("FILE"),
+       "also write the creases of the mesh as lines, .vtk or .ply (default: none)") //
+      ("split_normals", po::bool_switch (),
+       "vertices of creases are doubled, with the normals of each side (default: not)") //
       ("enrichment", word ("NAME"),
        withDefault (listNames (ENRICHMENTS) + ": what sharp edges add to the field; jump is for functional constraints",
-                    nameOf (ENRICHMENTS, field.enrichment))
+                    nameOf (ENRICHMENTS, options.field.enrichment))
            .c_str ());
   return description;
 }
@@ -156,7 +177,8 @@ listOptions (const Options &defaults)
 {
   po::options_description description;
   description.add (describeSupport (defaults.field));
-  description.add (describeField (defaults.field)).add (describeMeshing (defaults.polygonizer));
+  description.add (describeField (defaults.field)).add (describeSharpEdges (defaults));
+  description.add (describeMeshing (defaults.polygonizer));
   return description;
 }
 

@@ -4,6 +4,8 @@
 #include "named_values.h"
 #include "tool_error.h"
 
+#include <boost/program_options.hpp>
+
 #include <string>
 #include <vector>
 
@@ -20,6 +22,15 @@ struct OptionText
   [[noreturn]] void
   refuse (const std::string &remedy) const;
 };
+
+/** \brief Gives \a take the text of an option that was given. */
+template <typename TakeT>
+void
+ifGiven (const boost::program_options::variables_map &variables, const char *name, TakeT take)
+{
+  if (variables.count (name) > 0)
+    take (OptionText{name, variables[name].as<std::string> ()});
+}
 
 /** \brief A whole number of at least \a least, or 0 where that means "choose". */
 int

@@ -38,11 +38,24 @@ meshToJson (const Report &report)
 }
 
 Json
+sharpEdgesToJson (const CommandLine &line, const Report &report, double crease_length)
+{
+  return {{"given", line.options.field.sharp_surfaces.size ()},
+          {"found", report.sharp_surfaces.size ()},
+          {"normals_sharpened", report.normals.sharpened},
+          {"normals_smoothed", report.normals.smoothed},
+          {"creases", report.creases.size ()},
+          {"corners", report.corners.size ()},
+          {"crease_length", crease_length}};
+}
+
+Json
 secondsToJson (const Report &report, const ToolTimes &times)
 {
   return {{"read", times.read},
           {"points", report.seconds_points},
           {"normals", report.seconds_normals},
+          {"sharp", report.seconds_sharp},
           {"field", report.seconds_field},
           {"polygonizer", report.seconds_polygonizer},
           {"evaluate", times.evaluate},
@@ -53,7 +66,8 @@ secondsToJson (const Report &report, const ToolTimes &times)
 } // namespace
 
 void
-writeReport (const CommandLine &line, const Report &report, const ToolTimes &times, OutputFile &file)
+writeReport (const CommandLine &line, const Report &report, double crease_length, const ToolTimes &times,
+             OutputFile &file)
 {
   Json json;
   json["version"] = ERKPA_VERSION;
@@ -76,6 +90,7 @@ writeReport (const CommandLine &line, const Report &report, const ToolTimes &tim
   json["voxel_size"] = report.polygonizer.voxel_size;
   json["evaluations"] = report.polygonizer.evaluations;
   json["mean_nodes_per_evaluation"] = report.meanNodesPerEvaluation ();
+  json["sharp_edges"] = sharpEdgesToJson (line, report, crease_length);
   json["mesh"] = meshToJson (report);
   json["seconds"] = secondsToJson (report, times);
   json["peak_memory_mb"] = peakMemoryInMb ();

@@ -16,8 +16,11 @@ struct ToolTimes
   double total = 0.0;
 };
 
-/** \brief Writes what was done as JSON; the file is closed, not yet committed. */
+/** \brief Writes what was done as JSON; the file is closed, not yet committed.
+ * \param[in] crease_length of all creases together
+ */
 void
-writeReport (const CommandLine &line, const Report &report, const ToolTimes &times, OutputFile &file);
+writeReport (const CommandLine &line, const Report &report, double crease_length, const ToolTimes &times,
+             OutputFile &file);
 
 } // namespace erkpa::tool

@@ -2,6 +2,7 @@
 #include "run.h"
 
 #include "cloud_reader.h"
+#include "crease_writer.h"
 #include "float_cloud.h"
 #include "mesh_writer.h"
 #include "output_file.h"
@@ -11,6 +12,7 @@
 #include "tool_error.h"
 
 #include <erkpa/erkpa.h>
+#include <erkpa/sharp_surface_io.h>
 
 #include <memory>
 
@@ -59,7 +61,8 @@ public:
   void
   run ()
   {
-    for (const std::string *path : {&line_.output, &line_.values, &line_.report})
+    for (const std::string *path :
+         {&line_.output, &line_.values, &line_.report, &line_.saved_sharp_edges, &line_.creases})
       if (!path->empty ()) // better now than after the work
         OutputFile::check (*path);
     const pcl::PCLPointCloud2 cloud = load ();
@@ -130,6 +133,10 @@ private:
     if (collocation.unknowns > 0)
       print_info ("  collocation of %zu values: largest miss %g of the support radius\n", collocation.unknowns,
                   collocation.residual);
+    if (line_.options.sharp.automatic || !line_.options.sharp.faces.empty ())
+      print_info ("  found %zu sharp edges\n", report_.sharp_surfaces.size ());
+    if (!report_.creases.empty ())
+      print_info ("  %zu creases, %zu corners\n", report_.creases.size (), report_.corners.size ());
     if (!line_.output.empty ())
       print_info ("  %zu vertices, %zu pieces, %zu boundary edges\n", report_.vertices, report_.topology.components,
                   report_.topology.boundary_edges);
@@ -157,11 +164,27 @@ private:
       writeMesh (mesh_, line_.output, newFile (line_.output));
       times_.write = step.done (mesh_.polygons.size (), "triangles");
     }
+    if (!line_.creases.empty ())
+      writeCreases (mesh_, report_.creases, line_.creases, newFile (line_.creases));
+    if (!line_.saved_sharp_edges.empty ())
+      saveSharpEdges (newFile (line_.saved_sharp_edges));
     times_.total = total_.toc () * 1e-3;
     if (!line_.report.empty ())
-      writeReport (line_, report_, times_, newFile (line_.report));
+      writeReport (line_, report_, lengthOf (mesh_, report_.creases), times_, newFile (line_.report));
     for (const std::unique_ptr<OutputFile> &file : files)
       file->commit ();
+  }
+
+  /** \brief Those in force: given and found. */
+  void
+  saveSharpEdges (OutputFile &file)
+  {
+    std::string text;
+    const Outcome outcome = writeSharpSurfaces (field_->options ().sharp_surfaces, text);
+    if (!outcome.ok ())
+      throw ToolError ("cannot write " + line_.saved_sharp_edges + ": " + outcome.message);
+    file.write (text);
+    file.close ();
   }
 
   void

@@ -49,7 +49,15 @@ TEST_F (ErkpaReconstruct, PrintsEveryDefaultOnHelp)
                                    "-enrichment",
                                    "-sharp_sphere",
                                    "-sharp_cylinder",
-                                   "-sharp_cone"})
+                                   "-sharp_cone",
+                                   "-sharp_edges",
+                                   "-face",
+                                   "-face_tolerance",
+                                   "-sharp_auto",
+                                   "-sharp_angle",
+                                   "-save_sharp_edges",
+                                   "-creases",
+                                   "-split_normals"})
     {
       const std::size_t at = result.out.find ("\n    " + name + " ");
       ASSERT_NE (at, std::string::npos) << name;
@@ -131,7 +139,7 @@ TEST_F (ErkpaReconstruct, ReportsWhatItDid)
   EXPECT_GT (report["peak_memory_mb"], 1.0);
   EXPECT_TRUE (report["version"].is_string ());
   double sum = 0.0;
-  for (const std::string stage : {"read", "points", "normals", "field", "polygonizer", "evaluate", "write"})
+  for (const std::string stage : {"read", "points", "normals", "sharp", "field", "polygonizer", "evaluate", "write"})
     sum += report["seconds"][stage].get<double> ();
   EXPECT_GT (sum, 0.0);
   EXPECT_LE (sum, report["seconds"]["total"]);

@@ -35,6 +35,7 @@ TEST_F (ErkpaReconstruct, RefusesBadUseWithOneLine)
   expectRefuses ("sphere.xyz out.ply -kernel singular -interpolate collocation", "singular");
   expectRefuses ("sphere.xyz out.ply -report out.ply", "same file");
   expectRefuses ("sphere.xyz -evaluate sphere.xyz r.txt -report r.txt", "same file");
+  expectRefuses ("sphere.xyz -evaluate sphere.xyz sphere.xyz", "write over");
 }
 
 TEST_F (ErkpaReconstruct, RefusesNonsenseValuesWithOneLine)
@@ -75,7 +76,14 @@ TEST_F (ErkpaReconstruct, RefusesNonsenseValuesWithOneLine)
                                    "-offset 1,2",
                                    "-sharp_sphere 0,0,0,-1",
                                    "-sharp_cylinder 0,0,0,0,0,0,1",
-                                   "-sharp_cone 0,0,0,0,0,1,2"})
+                                   "-sharp_cone 0,0,0,0,0,1,2",
+                                   "-sharp_angle 4",
+                                   "-sharp_angle 91",
+                                   "-sharp_angle nan",
+                                   "-sharp_angle sharp",
+                                   "-face 0,0,0,1",
+                                   "-face 1,0,0",
+                                   "-face_tolerance -1"})
     expectRefuses ("sphere.xyz out.ply " + option, option.substr (0, option.find (' ')));
   expectRefuses ("sphere.xyz out.ply -flatten 0", "flatten");
   expectRefuses ("sphere.xyz out.ply -flatten 2", "flatten");

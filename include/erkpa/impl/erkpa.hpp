@@ -6,6 +6,7 @@
 
 #include <erkpa/erkpa.h>
 #include <erkpa/impl/cloud_adaptor.hpp>
+#include <erkpa/sharp_surface_io.h>
 
 #include <pcl/common/io.h>
 #include <pcl/console/print.h>
@@ -141,88 +142,21 @@ ERKPA<PointNT>::computeField ()
 }
 
 template <typename PointNT>
-SharpSurface::ConstPtr
-ERKPA<PointNT>::sharpSurfaceOf (const pcl::ModelCoefficients &coefficients, pcl::SacModel model) const
+bool
+ERKPA<PointNT>::saveSharpSurfaces (const std::string &path) const
 {
-  SharpSurface::ConstPtr surface;
-  SurfaceModel kind = SurfaceModel::PLANE;
-  Outcome outcome{Status::INVALID_SETTING, "the model " + std::to_string (static_cast<int> (model)) +
-                                               " is none of plane, sphere, cylinder, cone"};
-  if (surfaceModelOf (model, kind))
-    outcome = makeSharpSurface (kind, coefficients.values, surface);
+  const Outcome outcome =
+      erkpa::saveSharpSurfaces (path, field_ ? field_->options ().sharp_surfaces : getSharpSurfaces ());
   if (!outcome.ok ())
-    PCL_ERROR ("[%s::addSharpEdge] %s.\n", getClassName ().c_str (), outcome.message.c_str ());
-  return surface;
-}
-
-template <typename PointNT>
-bool
-ERKPA<PointNT>::addSharpEdge (const pcl::ModelCoefficients &coefficients)
-{
-  return addSharpEdge (coefficients, pcl::SACMODEL_PLANE);
-}
-
-template <typename PointNT>
-bool
-ERKPA<PointNT>::addSharpEdge (const pcl::ModelCoefficients &coefficients, pcl::SacModel model)
-{
-  const SharpSurface::ConstPtr surface = sharpSurfaceOf (coefficients, model);
-  if (!surface)
-    return false;
-  if (planeBehind (*surface) != nullptr)
-    sharp_edges_.push_back (coefficients);
-  addSharpSurface (surface);
-  return true;
-}
-
-template <typename PointNT>
-bool
-ERKPA<PointNT>::addSharpEdge (const pcl::ModelCoefficients &face, pcl::SacModel model,
-                              const pcl::ModelCoefficients &other, pcl::SacModel other_model)
-{
-  const SharpSurface::ConstPtr of_face = sharpSurfaceOf (face, model), of_other = sharpSurfaceOf (other, other_model);
-  if (!of_face || !of_other)
-    return false;
-  const SharpSurface::ConstPtr between = makeSharpBetween (of_face, of_other);
-  if (!between)
-    PCL_ERROR ("[%s::addSharpEdge] the two planes are parallel: they meet in no edge.\n", getClassName ().c_str ());
-  addSharpSurface (between);
-  return between != nullptr;
-}
-
-template <typename PointNT>
-void
-ERKPA<PointNT>::addSharpSurface (const SharpSurface::ConstPtr &surface)
-{
-  if (surface)
-    options_.field.sharp_surfaces.push_back (surface);
-}
-
-template <typename PointNT>
-bool
-ERKPA<PointNT>::setSharpEdges (std::vector<pcl::ModelCoefficients> edges)
-{
-  std::vector<pcl::ModelCoefficients> old_edges;
-  std::vector<SharpSurface::ConstPtr> old_surfaces;
-  old_edges.swap (sharp_edges_);
-  old_surfaces.swap (options_.field.sharp_surfaces);
-  for (const pcl::ModelCoefficients &edge : edges)
-  {
-    if (addSharpEdge (edge))
-      continue;
-    sharp_edges_.swap (old_edges);
-    options_.field.sharp_surfaces.swap (old_surfaces);
-    return false;
-  }
-  return true;
+    PCL_ERROR ("[%s::saveSharpSurfaces] %s.\n", getClassName ().c_str (), outcome.message.c_str ());
+  return outcome.ok ();
 }
 
 template <typename PointNT>
 void
 ERKPA<PointNT>::setOptions (const Options &options)
 {
-  options_ = options;
-  sharp_edges_.clear ();
+  replaceOptions (options);
   use_sensor_origin_ = false;
 }
 

@@ -1,0 +1,102 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "feature_loops.h"
+#include "half_edges.h"
+
+#include <vector>
+
+namespace erkpa
+{
+
+/** \brief A triangle's directed area (twice that) and how narrow it is. */
+struct TriangleShape
+{
+  Eigen::Vector3d area;
+  double sine;     ///< of its smallest angle
+  double shortest; ///< squared length of its shortest side
+
+  TriangleShape (const Eigen::Vector3d &a, const Eigen::Vector3d &b, const Eigen::Vector3d &c);
+};
+
+/** \brief Judges what the collapse or the flip of an edge would do to the surface and its creases.
+ *
+ * Triangles are held against the normals of f at their vertices where these are on no crease, and against themselves
+ * where they are well shaped.
+ */
+class EdgeJudge
+{
+public:
+  /** \param[in,out] edges the edges in \a creases get marked */
+  EdgeJudge (double voxel, const std::vector<VertexPair> &creases, const SurfaceVertices &vertices, HalfEdges &edges);
+
+  double
+  squaredLength (int h) const
+  {
+    return (at (edges_.start (h)) - at (edges_.end (h))).squaredNorm ();
+  }
+
+  /** \brief Of the triangle with a half-edge. */
+  TriangleShape
+  shapeOf (int h) const
+  {
+    return {at (edges_.start (h)), at (edges_.end (h)), at (apex (h))};
+  }
+
+  /** \brief The sine of the smallest angle around the start of a half-edge once it is collapsed.
+   * \return -1 where it must not be
+   */
+  double
+  sineAfterCollapse (int h);
+
+  /** \brief By how much the flip of an edge raises the sine of the smallest angle; -1 where it must not be flipped. */
+  double
+  gainOfFlip (int h) const;
+
+private:
+  const Eigen::Vector3d &
+  at (int v) const
+  {
+    return vertices_.positions[static_cast<std::size_t> (v)];
+  }
+
+  int
+  apex (int h) const
+  {
+    return edges_.start (HalfEdges::previous (h));
+  }
+
+  bool
+  isPlain (int v) const
+  {
+    return degrees_[static_cast<std::size_t> (v)] == 0;
+  }
+
+  /** \brief Whether a collapse along this half-edge moves a crease, or an end or corner of one, off its place. */
+  bool
+  movesCrease (int h) const;
+
+  /** \brief Whether the crease through the start of a half-edge along it stays where it is without that vertex. */
+  bool
+  keepsCrease (int h) const;
+
+  /** \brief Whether the diagonals a b and c d of a quadrilateral pass each other closely. */
+  bool
+  isNearlyFlat (int a, int b, int c, int d) const;
+
+  /** \brief Where f looks at a vertex; zero on a crease, where it looks several ways. */
+  Eigen::Vector3d
+  facing (int v) const
+  {
+    if (!isPlain (v))
+      return Eigen::Vector3d::Zero ();
+    return vertices_.normals[static_cast<std::size_t> (v)];
+  }
+
+  double voxel_;
+  const SurfaceVertices &vertices_;
+  HalfEdges &edges_;
+  std::vector<int> degrees_; // crease edges per vertex
+};
+
+} // namespace erkpa

@@ -1,0 +1,143 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <vector>
+
+namespace erkpa
+{
+
+/** \brief The triangles of an oriented mesh with what lies across their sides.
+ *
+ * Half-edge 3 t + i runs along the side of triangle t from its vertex i to the next one; its twin is that of the
+ * neighbouring triangle, -1 on the border.
+ */
+class HalfEdges
+{
+public:
+  enum class Place : char
+  {
+    INSIDE,
+    BORDER,
+    TANGLED ///< several borders meet in the vertex
+  };
+
+  HalfEdges (const std::vector<std::array<int, 3>> &triangles, std::size_t vertex_count);
+
+  static int
+  next (int h)
+  {
+    return h % 3 == 2 ? h - 2 : h + 1;
+  }
+
+  static int
+  previous (int h)
+  {
+    return h % 3 == 0 ? h + 2 : h - 1;
+  }
+
+  int
+  start (int h) const
+  {
+    return starts_[static_cast<std::size_t> (h)];
+  }
+
+  int
+  end (int h) const
+  {
+    return start (next (h));
+  }
+
+  int
+  twin (int h) const
+  {
+    return twins_[static_cast<std::size_t> (h)];
+  }
+
+  bool
+  isAlive (int h) const
+  {
+    return start (h) >= 0;
+  }
+
+  Place
+  place (int v) const
+  {
+    return places_[static_cast<std::size_t> (v)];
+  }
+
+  bool
+  onCrease (int h) const
+  {
+    return creases_[static_cast<std::size_t> (h)] != 0;
+  }
+
+  void
+  setCrease (int h, bool crease);
+
+  /** \brief The half-edge between two vertices, in either direction; -1 where there is none. */
+  int
+  between (int a, int b) const;
+
+  /** \brief Visit the half-edges that start at a vertex, counter-clockwise. */
+  template <typename VisitT>
+  void
+  around (int v, VisitT visit) const
+  {
+    const int first = outgoing_[static_cast<std::size_t> (v)];
+    int h = first;
+    while (h >= 0)
+    {
+      visit (h);
+      h = twin (previous (h));
+      if (h == first)
+        break;
+    }
+  }
+
+  /** \brief Whether the mesh stays a manifold of the same topology, and its border the same, by collapse (h). */
+  bool
+  canCollapse (int h);
+
+  /** \brief Move the start of a half-edge into its end: two triangles vanish. */
+  void
+  collapse (int h);
+
+  /** \brief Join the vertices across an edge instead of its own. */
+  void
+  flip (int h);
+
+  /** \brief The triangles that are left, in the order of their half-edges. */
+  void
+  collect (std::vector<std::array<int, 3>> &triangles) const;
+
+private:
+  void
+  setStart (int h, int v)
+  {
+    starts_[static_cast<std::size_t> (h)] = v;
+  }
+
+  int &
+  outgoing (int v)
+  {
+    return outgoing_[static_cast<std::size_t> (v)];
+  }
+
+  void
+  pair (int h, int other, bool crease);
+
+  void
+  findTwins ();
+
+  std::vector<int> starts_; // per half-edge its vertex, -1 where the triangle has vanished
+  std::vector<int> twins_;
+  std::vector<char> creases_;
+  std::vector<int> outgoing_; // per vertex a half-edge that starts there: on the border the first one; -1 if none does
+  std::vector<Place> places_;
+  std::vector<int> marks_; // per vertex: the last question of canCollapse in which it was a neighbour
+  int mark_ = 0;
+};
+
+} // namespace erkpa
