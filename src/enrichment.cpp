@@ -47,6 +47,7 @@ Enrichment::Enrichment (const ImplicitField &field)
     const SpaceWarp *warp = nullptr;
     const bool is_linear = planeBehind (*surface, &warp) != nullptr && warp == nullptr;
     const bool is_square_in_basis = is_linear && order == Order::QUADRATIC;
+    is_plane_.push_back (is_linear ? 1 : 0);
     costly_.push_back (isCostly (*surface) ? 1 : 0);
     reversible_.push_back (jumps_ || (is_linear && order != Order::CONSTANT) ? 1 : 0);
     squared_.push_back (squares && order != Order::CONSTANT && !is_square_in_basis ? 1 : 0);
@@ -77,7 +78,11 @@ void
 Enrichment::evaluateThetas (const Support &support, int surface)
 {
   const SharpSurface &sharp = *field_.enrichingSurfaces ()[static_cast<std::size_t> (surface)];
-  if (sharp.isAbsentIn (support.center () + field_.points ().origin, support.reach ()))
+  const Eigen::Vector3d center = support.center () + field_.points ().origin;
+  if (sharp.isAbsentIn (center, support.reach ()))
+    return;
+  constexpr double MARGIN = 1.0 + 1e-9; // for rounding: θ of a plane is the distance itself
+  if (is_plane_[static_cast<std::size_t> (surface)] != 0 && std::abs (sharp.theta (center)) > MARGIN * support.reach ())
     return;
   const std::size_t slots = support.points ().size ();
   const auto position = [&] (std::size_t slot)

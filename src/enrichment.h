@@ -184,6 +184,7 @@ private:
 
   const ImplicitField &field_;
   bool jumps_;
+  std::vector<char> is_plane_;                                // per sharp surface: not seen through a warp
   std::vector<char> reversible_;                              // per sharp surface: see isReversible ()
   std::vector<char> squared_;                                 // per sharp surface: whether its kink comes with θ²
   std::vector<char> costly_;                                  // per sharp surface: whether known_ keeps its θ
