@@ -148,7 +148,8 @@ FaceGroups::select (const Support &support, const Eigen::Vector3d &x)
   countNodes (support);
   if (groups_.size () < 2)
     return false;
-  std::stable_sort (groups_.begin (), groups_.end (), [] (const Group &a, const Group &b) { return a.nodes > b.nodes; });
+  std::stable_sort (groups_.begin (), groups_.end (),
+                    [] (const Group &a, const Group &b) { return a.nodes > b.nodes; });
   group_of_place_.assign (present_.size (), -1);
   for (std::size_t place = 0; place < present_.size (); ++place)
     for (std::size_t g = 0; g < groups_.size (); ++g)

@@ -140,8 +140,7 @@ FaceMap::findJoints (const OrientedPoints &points, const NeighborSearch &search,
       if (j <= static_cast<int> (i) || other < 0 || face == other)
         continue;
       const Eigen::Vector3f way = points.positions[static_cast<std::size_t> (j)] - points.positions[i];
-      const float step =
-          0.5f * std::abs (way.dot (points.normals[i] + points.normals[static_cast<std::size_t> (j)]));
+      const float step = 0.5f * std::abs (way.dot (points.normals[i] + points.normals[static_cast<std::size_t> (j)]));
       if (turn < LEAST_COSINE || step > BEND * way.norm ())
         continue;
       const Eigen::Vector3f middle = 0.5f * (points.positions[i] + points.positions[static_cast<std::size_t> (j)]);

@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "normal_orientation.h"
 
+#include "orientation_facets.h"
+#include "orientation_graph.h"
+#include "orientation_layers.h"
 #include "threads.h"
 
 #include <algorithm>
@@ -16,126 +19,123 @@ namespace erkpa
 namespace
 {
 
-constexpr std::size_t LINKS = 10; // a node is linked to so many of its neighbours, near and far
-constexpr double SEEN = 0.85;     // share of a piece that must agree for the view point to be believed
+constexpr std::size_t LINKS = 12;    // a node is linked to so many of its neighbours, near and far
+constexpr float BLOCKED = 0.1f;      // weight of a link with another node in its way
+constexpr float LAYER_WEIGHT = 0.1f; // of a column's vote; that of two neighbours in a plane is 1
+constexpr double OPEN = 0.35;        // share of columns with an odd number of layers: of a closed surface few miss one
+constexpr double SEEN = 0.85;        // share of a piece that must agree for the view point to be believed
+constexpr float ASTRAY = 0.5f;       // cosine between an estimated normal and its facet: one of a rim or thin wall
 
-/** \brief A pair of neighbours; unsureness is 0 for two points of one flat patch, and grows from there. */
-struct Link
+/** \brief What two neighbours say about their signs.
+ *
+ * Along a smooth piece of surface the normals agree. Where one lies off the plane of the other there is an edge or
+ * another sheet between them: then both see each other below, or both above, their facets.
+ * \return from -1 (opposite signs) to 1 (the same)
+ */
+float
+agreement (const Facet &f, const Facet &g, const Eigen::Vector3f &chord, const Facets &facets)
 {
-  float unsureness;
-  int from, to;
-  bool flips;
-
-  bool
-  operator<(const Link &other) const
-  {
-    return std::make_pair (unsureness, std::make_pair (from, to)) <
-           std::make_pair (other.unsureness, std::make_pair (other.from, other.to));
-  }
-};
-
-/** \brief Sets of nodes whose signs are known relative to each other. */
-class SignedSets
-{
-public:
-  explicit SignedSets (std::size_t size) : parents_ (size), flips_ (size, 0)
-  {
-    std::iota (parents_.begin (), parents_.end (), 0);
-  }
-
-  /** \brief The set of a node and whether the node is flipped against it. */
-  std::pair<int, bool>
-  find (int node)
-  {
-    bool flipped = false;
-    int root = node;
-    for (; parent (root) != root; root = parent (root))
-      flipped ^= flip (root) != 0;
-    bool rest = flipped;
-    while (parent (node) != root && node != root) // compress the path
-    {
-      const int next = parent (node);
-      const bool own = flip (node) != 0;
-      parent (node) = root;
-      flip (node) = rest ? 1 : 0;
-      rest ^= own;
-      node = next;
-    }
-    return {root, flipped};
-  }
-
-  void
-  unite (const Link &link)
-  {
-    const auto [a, a_flipped] = find (link.from);
-    const auto [b, b_flipped] = find (link.to);
-    if (a == b)
-      return;
-    const int low = std::min (a, b), high = std::max (a, b);
-    parent (high) = low;
-    flip (high) = (a_flipped ^ b_flipped ^ link.flips) ? 1 : 0;
-  }
-
-private:
-  int &
-  parent (int i)
-  {
-    return parents_[static_cast<std::size_t> (i)];
-  }
-
-  char &
-  flip (int i)
-  {
-    return flips_[static_cast<std::size_t> (i)];
-  }
-
-  std::vector<int> parents_;
-  std::vector<char> flips_;
-};
-
-Link
-linkBetween (const OrientedPoints &points, const std::vector<Eigen::Vector3f> &normals, int from, int to)
-{
-  const auto i = static_cast<std::size_t> (from), j = static_cast<std::size_t> (to);
-  const Eigen::Vector3f way = (points.positions[j] - points.positions[i]).normalized ();
-  const float slope = normals[i].dot (way), other_slope = normals[j].dot (way);
-  const float mirrored = normals[i].dot (normals[j]) - 2.0f * slope * other_slope;
-  // A pair that stands along its normals is a thin wall or two layers of a noisy scan: to be asked last.
-  const float steepness = std::max (slope * slope, other_slope * other_slope);
-  return {1.0f - std::abs (mirrored) + steepness, from, to, mirrored < 0.0f};
+  const float r = chord.norm (), reach = r / static_cast<float> (facets.spacing);
+  const float deviation = std::max (f.deviation, g.deviation), bend = std::max (f.bend, g.bend);
+  const float tolerance = 2.0f * deviation + (0.03f + 0.5f * bend * reach) * r;
+  const float a = f.normal.dot (chord) / tolerance, b = g.normal.dot (chord) / tolerance;
+  const float steepness = a * a + b * b;
+  const float cosine = f.normal.dot (g.normal);
+  // In a scan, parallel facets one above the other are of one noisy sheet, or both face the sensor.
+  const float angled = facets.kind == SurfaceKind::CLOSED ? 1.0f : 1.0f - cosine * cosine;
+  const float edge = -2.0f * a * b / (1.0f + steepness) * angled;
+  const float smooth = cosine * 3.0f / (3.0f + steepness);
+  const float trust = static_cast<float> (facets.tolerance) / deviation;
+  return (edge + smooth) * std::exp (-0.25f * reach * reach) * trust;
 }
 
-std::vector<Link>
-linkNeighbors (const OrientedPoints &points, const NeighborSearch &search, const std::vector<Eigen::Vector3f> &normals,
-               int k, int threads)
+/** \brief Scratch memory of a neighbour query. */
+struct Query
 {
-  struct Scratch
-  {
-    std::vector<int> indices;
-    std::vector<float> squared;
-    std::vector<std::pair<float, int>> order;
-  };
-  std::vector<std::vector<Link>> of_node (points.size ());
+  std::vector<int> indices;
+  std::vector<float> squared;
+  std::vector<std::pair<float, int>> order;
+};
+
+/** \brief Whether no neighbour lies in the ball over a pair (Gabriel): none in between that knows better. */
+bool
+isFree (const OrientedPoints &points, const Query &query, const Eigen::Vector3f &middle, float squared)
+{
+  constexpr float RADIUS = 0.2499f; // squared, of the pair's distance: its own ends are outside
+  return std::none_of (query.order.begin (), query.order.end (),
+                       [&] (const std::pair<float, int> &other)
+                       {
+                         const Eigen::Vector3f &x = points.positions[static_cast<std::size_t> (other.second)];
+                         return (x - middle).squaredNorm () <= RADIUS * squared;
+                       });
+}
+
+std::vector<SignedLink>
+linkNeighbors (const OrientedPoints &points, const NeighborSearch &search, const Facets &facets, int k, int threads)
+{
+  std::vector<std::vector<SignedLink>> of_node (points.size ());
   parallelFor (
-      points.size (), threads, [] { return Scratch (); },
-      [&] (Scratch &scratch, std::size_t i)
+      points.size (), threads, [] { return Query (); },
+      [&] (Query &query, std::size_t i)
       {
-        search.nearestK (points.positions[i], k, scratch.indices, scratch.squared);
-        scratch.order.clear ();
-        for (std::size_t j = 0; j < scratch.indices.size (); ++j)
-          if (scratch.indices[j] != static_cast<int> (i))
-            scratch.order.emplace_back (scratch.squared[j], scratch.indices[j]);
-        std::sort (scratch.order.begin (), scratch.order.end ());
-        const std::size_t step = std::max<std::size_t> (1, scratch.order.size () / LINKS);
-        for (std::size_t j = 0; j < scratch.order.size (); j += step)
-          of_node[i].push_back (linkBetween (points, normals, static_cast<int> (i), scratch.order[j].second));
+        const Eigen::Vector3f &x = points.positions[i];
+        search.nearestK (x, k, query.indices, query.squared);
+        query.order.clear ();
+        for (std::size_t j = 0; j < query.indices.size (); ++j)
+          if (query.indices[j] != static_cast<int> (i))
+            query.order.emplace_back (query.squared[j], query.indices[j]);
+        std::sort (query.order.begin (), query.order.end ());
+        const std::size_t step = std::max<std::size_t> (1, query.order.size () / LINKS);
+        for (std::size_t o = 0; o < query.order.size (); o += step)
+        {
+          const auto j = static_cast<std::size_t> (query.order[o].second);
+          const Eigen::Vector3f &y = points.positions[j];
+          const float weight = agreement (facets.of_node[i], facets.of_node[j], y - x, facets);
+          const bool free = isFree (points, query, 0.5f * (x + y), query.order[o].first);
+          of_node[i].push_back ({static_cast<int> (i), query.order[o].second, free ? weight : BLOCKED * weight});
+        }
       });
-  std::vector<Link> links;
-  links.reserve (points.size () * LINKS);
+  std::vector<SignedLink> links;
   for (const auto &some : of_node)
     links.insert (links.end (), some.begin (), some.end ());
-  std::sort (links.begin (), links.end ());
   return links;
+}
+
+/** \brief What the nodes say about their signs, and what the layers say about the outside. */
+struct Network
+{
+  Facets facets;
+  std::vector<SignedLink> links;
+  std::vector<int> pieces;        ///< of each node
+  std::vector<LayerVotes> layers; ///< of each node
+  std::map<int, double> open;     ///< of each piece: the share of columns with an odd number of layers
+  double all_open = 0.0;          ///< the same of all nodes
+};
+
+Network
+connect (const OrientedPoints &points, const NeighborSearch &search, SurfaceKind kind, int k, int threads,
+         const std::vector<Eigen::Vector3f> &normals)
+{
+  Network network;
+  network.facets = findFacets (points, search, kind, k, threads, normals);
+  const int neighbors = std::max<int> (LINKS + 1, network.facets.k / 2);
+  network.links = linkNeighbors (points, search, network.facets, neighbors, threads);
+  network.pieces = piecesOf (static_cast<int> (points.size ()), network.links);
+  network.layers = votesOfLayers (points, network.facets, threads);
+  std::map<int, double> odd, all;
+  double odd_sum = 0.0, sum = 0.0;
+  for (std::size_t i = 0; i < points.size (); ++i)
+  {
+    const LayerVotes &layers = network.layers[i];
+    odd[network.pieces[i]] += layers.odd;
+    all[network.pieces[i]] += layers.odd + layers.even;
+    odd_sum += layers.odd;
+    sum += layers.odd + layers.even;
+  }
+  for (const auto &[piece, count] : all)
+    network.open[piece] = count > 0.0 ? odd[piece] / count : 1.0;
+  network.all_open = sum > 0.0 ? odd_sum / sum : 1.0;
+  return network;
 }
 
 /** \brief What speaks for the sign of one piece; positive means that its signs are right as they are. */
@@ -143,6 +143,7 @@ struct Votes
 {
   double given = 0.0;              ///< normals that came with the input
   double seen = 0.0, unseen = 0.0; ///< agreement with the view point
+  double layers = 0.0;             ///< agreement with the layers of a closed surface
   std::array<float, 26> farthest;  ///< per direction, how far out the outermost node lies
   std::array<float, 26> outward{}; ///< and how its normal looks that way
   double upward = 0.0;             ///< for a sheet, which has no outside
@@ -155,6 +156,8 @@ struct Votes
   bool
   outwards () const
   {
+    if (std::abs (layers) > seen + unseen) // more than one column per node
+      return layers > 0.0;
     const float sum = std::accumulate (outward.begin (), outward.end (), 0.0f);
     return std::abs (sum) > 1.0f ? sum > 0.0f : upward >= 0.0;
   }
@@ -187,26 +190,65 @@ castVote (Votes &votes, const std::array<Eigen::Vector3f, 26> &ways, const Eigen
     }
 }
 
+/** \brief Pieces of the cloud whose normals' signs are known relative to each other. */
+struct Pieces
+{
+  std::vector<int> of_node;
+  std::map<int, Votes> votes;
+};
+
+/** \brief Finds signs that agree within each piece.
+ * \param[in,out] normals those that were not given and have nothing to do with their facet are replaced
+ * \param[out] turned per node, whether its normal must be turned for that
+ */
+Pieces
+agree (const OrientedPoints &points, const NeighborSearch &search, int k, int threads,
+       std::vector<Eigen::Vector3f> &normals, std::vector<char> &turned)
+{
+  Network network = connect (points, search, SurfaceKind::CLOSED, k, threads, normals);
+  if (network.all_open > OPEN)
+    network = connect (points, search, SurfaceKind::OPEN, k, threads, normals);
+  const auto count = static_cast<int> (points.size ());
+  std::vector<int> layers (points.size (), 0);
+  for (std::size_t i = 0; i < points.size (); ++i)
+    if (network.open[network.pieces[i]] < OPEN)
+    {
+      layers[i] = network.layers[i].outwards;
+      if (layers[i] != 0) // the node after the last is the outside
+        network.links.push_back ({static_cast<int> (i), count, LAYER_WEIGHT * static_cast<float> (layers[i])});
+    }
+  const std::vector<char> flips = agreeOnSigns (count + 1, network.links);
+  Pieces pieces;
+  pieces.of_node = network.pieces;
+  for (std::size_t i = 0; i < points.size (); ++i)
+  {
+    const Eigen::Vector3f &facet = network.facets.of_node[i].normal;
+    if (points.normals[i].isZero (0.0f) && std::abs (facet.dot (normals[i])) < ASTRAY)
+      normals[i] = facet;
+    turned[i] = (flips[i] != 0) != (facet.dot (normals[i]) < 0.0f);
+    pieces.votes[pieces.of_node[i]].layers += flips[i] != 0 ? -layers[i] : layers[i];
+  }
+  return pieces;
+}
+
 } // namespace
 
 Orientation
 orientNormals (const OrientedPoints &points, const NeighborSearch &search, int k, const NormalOptions &options,
                std::vector<Eigen::Vector3f> &normals)
 {
-  SignedSets sets (points.size ());
-  for (const Link &link : linkNeighbors (points, search, normals, k, options.threads))
-    sets.unite (link);
+  std::vector<char> turned (points.size ());
+  Pieces pieces = agree (points, search, k, options.threads, normals, turned);
 
   const Eigen::Vector3f view_point = (options.view_point - points.origin).cast<float> ();
   const std::array<Eigen::Vector3f, 26> ways = directions ();
-  std::map<int, Votes> pieces;
   for (std::size_t i = 0; i < points.size (); ++i)
   {
-    const auto [piece, flipped] = sets.find (static_cast<int> (i));
-    const Eigen::Vector3f normal = flipped ? Eigen::Vector3f (-normals[i]) : normals[i];
-    castVote (pieces[piece], ways, points.positions[i], normal, view_point);
+    Votes &votes = pieces.votes[pieces.of_node[i]];
+    const Eigen::Vector3f normal = turned[i] ? Eigen::Vector3f (-normals[i]) : normals[i];
+    castVote (votes, ways, points.positions[i], normal, view_point);
     if (!points.normals[i].isZero (0.0f))
-      pieces[piece].given += flipped ? -1.0 : 1.0;
+      votes.given += turned[i] ? -1.0 : 1.0;
   }
 
   Orientation orientation = Orientation::VIEW_POINT;
@@ -214,10 +256,9 @@ orientNormals (const OrientedPoints &points, const NeighborSearch &search, int k
   {
     if (!points.normals[i].isZero (0.0f))
       continue;
-    const auto [piece, flipped] = sets.find (static_cast<int> (i));
-    const Votes &votes = pieces[piece];
+    const Votes &votes = pieces.votes[pieces.of_node[i]];
     const double agreement = std::max (votes.seen, votes.unseen) / (votes.seen + votes.unseen);
-    bool flip = flipped != (votes.given != 0.0 ? votes.given < 0.0 : !votes.outwards ());
+    bool flip = (turned[i] != 0) != (votes.given != 0.0 ? votes.given < 0.0 : !votes.outwards ());
     if (votes.given == 0.0 && options.has_view_point && agreement >= SEEN)
       flip = normals[i].dot (view_point - points.positions[i]) < 0.0f;
     else

@@ -10,11 +10,13 @@ namespace erkpa
 
 /** \brief Give estimated normals their sign.
  *
- * Neighbours are linked from the surest pair to the least sure (Hoppe et al. 1992), with the sign under which one
- * normal is the mirror image of the other across the middle of the pair (König and Gumhold 2009): right on both
- * sides of a sharp edge. Each piece that hangs together is then turned as a whole: like the given normals in it;
- * else, where the view point is known and nearly all of the piece could be seen from it, towards it, point by
- * point; else outwards.
+ * Signs are found on facets, which unlike the normals follow a sharp edge up to the crease and keep the two sides of a
+ * thin wall apart (findFacets). Neighbours say whether they have the same sign, by their normals and by which side of
+ * each facet the other one lies on (right at edges and between sheets); the layers of a closed surface say which side
+ * is out (votesOfLayers). Sets of nodes grow from the surest to the least sure, all votes between them added up
+ * (agreeOnSigns). Each piece that hangs together is then turned as a whole: like the given normals in it; else, where
+ * the view point is known and nearly all of the piece could be seen from it, towards it, point by point; else
+ * outwards. An estimated normal that lies across its facet, as on rims and in thin walls, is replaced by the facet's.
  * \param[in] points positions; a normal that is not zero was given and keeps its sign
  * \param[in] k neighbours that the normals were estimated from
  * \param[in,out] normals all normals, the given ones included

@@ -5,6 +5,9 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <cmath>
+
 using Eigen::Vector3d;
 using erkpa::NormalOptions;
 using erkpa::Orientation;
@@ -36,6 +39,69 @@ shareThatAgrees (const OrientedPoints &points, const std::vector<Vector3d> &norm
   for (std::size_t i = 0; i < points.size (); ++i)
     agree += points.normals[i].cast<double> ().dot (normals[i]) > 0.0;
   return agree / static_cast<double> (points.size ());
+}
+
+/** \brief A cup: a cylinder of radius and height 1 with walls of a thickness, open at the top. */
+shapes::Samples
+cup (int count, double thickness)
+{
+  std::mt19937 random (11);
+  std::uniform_real_distribution<double> unit (0.0, 1.0);
+  const double inner = 1.0 - thickness;
+  // outer wall, outer bottom, inner wall, inner bottom, rim
+  std::discrete_distribution<int> face_of ({2.0, 1.0, 2.0 * inner * inner, inner * inner, 1.0 - inner * inner});
+  shapes::Samples samples;
+  for (int i = 0; i < count; ++i)
+  {
+    const int face = face_of (random);
+    const double turn = 2.0 * M_PI * unit (random), share = unit (random);
+    const Eigen::Vector3d out (std::cos (turn), std::sin (turn), 0.0), up = Eigen::Vector3d::UnitZ ();
+    if (face == 0)
+      samples.add (out + share * up, out);
+    else if (face == 1)
+      samples.add (std::sqrt (share) * out, -up);
+    else if (face == 2)
+      samples.add (inner * out + (thickness + share * inner) * up, -out);
+    else if (face == 3)
+      samples.add (inner * std::sqrt (share) * out + thickness * up, up);
+    else
+      samples.add (std::sqrt (inner * inner + share * (1.0 - inner * inner)) * out + up, up);
+  }
+  return samples;
+}
+
+/** \brief Samples that no other one within a distance has a different normal direction from: away from edges. */
+std::vector<std::size_t>
+awayFromEdges (const shapes::Samples &samples, double distance)
+{
+  std::vector<Eigen::Vector3f> positions;
+  for (const Vector3d &p : samples.positions)
+    positions.emplace_back (p.cast<float> ());
+  const auto search = erkpa::makeKdTreeSearch (positions);
+  std::vector<std::size_t> away;
+  std::vector<int> indices;
+  std::vector<float> squared;
+  for (std::size_t i = 0; i < samples.size (); ++i)
+  {
+    search->withinRadius (positions[i], distance, indices, squared);
+    if (std::all_of (indices.begin (), indices.end (),
+                     [&] (int j) {
+                       return std::abs (samples.normals[i].dot (samples.normals[static_cast<std::size_t> (j)])) > 0.7;
+                     }))
+      away.push_back (i);
+  }
+  return away;
+}
+
+/** \brief How many normals have the wrong sign, away from edges; there should be many that are. */
+int
+wrongAwayFromEdges (const OrientedPoints &points, const shapes::Samples &samples, double distance)
+{
+  const std::vector<std::size_t> away = awayFromEdges (samples, distance);
+  EXPECT_GT (away.size (), samples.size () / 2);
+  return static_cast<int> (std::count_if (
+      away.begin (), away.end (),
+      [&] (std::size_t i) { return points.normals[i].cast<double> ().dot (samples.normals[i]) <= 0.0; }));
 }
 
 NormalOptions
@@ -99,6 +165,44 @@ TEST (Normals, HoldTogetherAcrossTheLayersOfANoisyScan)
     p *= 1.0 + noise (random);
   Orientation orientation = Orientation::NONE;
   EXPECT_GT (shareThatAgrees (estimate (sphere, {}, orientation), sphere.normals), 0.999);
+}
+
+TEST (Normals, AreRightOnBothSidesOfThinWalls)
+{
+  Orientation orientation = Orientation::NONE;
+  constexpr double SPACING = 0.032; // of the cup
+  for (const double thickness : {0.8 * SPACING, SPACING, 2.0 * SPACING})
+  {
+    const shapes::Samples walls = cup (18000, thickness);
+    const OrientedPoints points = estimate (walls, {}, orientation);
+    EXPECT_LE (wrongAwayFromEdges (points, walls, 2.0 * SPACING), 5) << thickness; // single points of 18000
+    EXPECT_GT (shareThatAgrees (points, walls.normals), 0.99) << thickness;
+  }
+  const shapes::Samples plate = shapes::box (12000, {1.0, 1.0, 0.02}); // its rim is 1.5 spacings wide
+  const OrientedPoints points = estimate (plate, {}, orientation);
+  EXPECT_EQ (wrongAwayFromEdges (points, plate, 0.052), 0);
+  EXPECT_GT (shareThatAgrees (points, plate.normals), 0.995);
+}
+
+TEST (Normals, PointIntoTheCavityOfAHollowBox)
+{
+  shapes::Samples hollow = shapes::box (8000, {1.0, 0.7, 0.5});
+  const shapes::Samples cavity = shapes::box (3000, {0.6, 0.3, 0.25});
+  for (std::size_t i = 0; i < cavity.size (); ++i)
+    hollow.add (cavity.positions[i], -cavity.normals[i]);
+  Orientation orientation = Orientation::NONE;
+  EXPECT_GT (shareThatAgrees (estimate (hollow, {}, orientation), hollow.normals), 0.999);
+}
+
+TEST (Normals, DoNotDependOnTheNumberOfThreads)
+{
+  const shapes::Samples walls = cup (6000, 0.05);
+  Orientation orientation = Orientation::NONE;
+  NormalOptions options;
+  options.threads = 1;
+  const OrientedPoints one = estimate (walls, options, orientation);
+  options.threads = 3;
+  EXPECT_EQ (one.normals, estimate (walls, options, orientation).normals);
 }
 
 TEST (Normals, ThatWereGivenStayAndGiveTheOthersTheirSign)

@@ -1,0 +1,29 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <vector>
+
+namespace erkpa
+{
+
+/** \brief What a pair of nodes says about their signs. */
+struct SignedLink
+{
+  int from, to;
+  float weight; ///< positive: the same sign, negative: opposite signs
+};
+
+/** \brief Signs that agree with the links as far as possible.
+ *
+ * Greedy contraction: the two sets of nodes that are surest of their relative sign become one, and what their nodes
+ * say about every other set is added up. Takes O(m log m) steps for m links.
+ * \return per node, whether it is opposite to its set
+ */
+std::vector<char>
+agreeOnSigns (int count, const std::vector<SignedLink> &links);
+
+/** \brief The piece that every node belongs to: what links hold together, named by its first node. */
+std::vector<int>
+piecesOf (int count, const std::vector<SignedLink> &links);
+
+} // namespace erkpa
