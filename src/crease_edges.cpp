@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <map>
 #include <set>
+#include <utility>
 
 namespace erkpa
 {
@@ -37,6 +38,8 @@ public:
         for (const VertexPair &pair : meshed_[i].crossings)
           crossings_[pair].push_back (static_cast<int> (i));
       }
+    pairLoops ();
+    sortVertices ();
     bool changed = true;
     while (changed)
     {
@@ -90,6 +93,46 @@ private:
     return centers_[static_cast<std::size_t> (loop)];
   }
 
+  /** \brief Exchanges neighbours whose vertices stand along their crease the other way round than their loops do. */
+  void
+  sortVertices ()
+  {
+    constexpr int ROUNDS = 3; // few stand farther off than one place
+    bool changed = true;
+    for (int round = 0; round < ROUNDS && changed; ++round)
+    {
+      changed = false;
+      for (const auto &[pair, of] : joined_)
+        if (isAlong (of.first) && isAlong (of.second) && isReversed (pair, of.first))
+        {
+          const auto one = static_cast<std::size_t> (center (of.first));
+          const auto other = static_cast<std::size_t> (center (of.second));
+          std::swap (vertices_.positions[one], vertices_.positions[other]);
+          std::swap (vertices_.normals[one], vertices_.normals[other]);
+          changed = true;
+        }
+    }
+  }
+
+  /** \brief Whether a single crease runs through a loop, so that its vertex may stand anywhere along it. */
+  bool
+  isAlong (int loop) const
+  {
+    return meshed_[static_cast<std::size_t> (loop)].crossings.size () == 2;
+  }
+
+  /** \brief Whether both triangles at the crease edge through the side \a pair of a loop look away. */
+  bool
+  isReversed (const VertexPair &pair, int loop) const
+  {
+    const std::vector<int> &ring = loops_[static_cast<std::size_t> (loop)].ring;
+    const auto first = std::find (ring.begin (), ring.end (), pair.first) - ring.begin ();
+    const bool is_forward = ring[static_cast<std::size_t> (first + 1) % ring.size ()] == pair.second;
+    const auto [a, b] = is_forward ? pair : VertexPair (pair.second, pair.first);
+    const int c = center (loop), d = nextOnCrease (static_cast<std::size_t> (loop), a, b);
+    return looksAway (a, d, c, normal (a)) && looksAway (b, c, d, normal (b));
+  }
+
   /** \brief The vertex that the crease through the side a, b of a loop goes on to; -1 where none runs through it. */
   int
   nextOnCrease (std::size_t loop, int a, int b) const
@@ -113,7 +156,16 @@ private:
   looksAway (int a, int b, int c, const Eigen::Vector3d &normal) const
   {
     constexpr double LEAST = 0.2; // cosine; a triangle across an edge of the surface has more
+    constexpr double FLAT = 1e-3; // height over length: a vertex of a face may happen to lie on the crease
     const Eigen::Vector3d area = areaOf (a, b, c);
+    const auto length = [this] (int v, int w)
+    {
+      return (vertices_.positions[static_cast<std::size_t> (v)] - vertices_.positions[static_cast<std::size_t> (w)])
+          .norm ();
+    };
+    const double longest = std::max ({length (a, b), length (b, c), length (c, a)});
+    if (area.norm () < FLAT * longest * longest)
+      return false;
     return area.dot (normal) < LEAST * area.norm () * normal.norm ();
   }
 

@@ -37,13 +37,13 @@ public:
     findSides (loop, result);
     if (result.crossings.empty ())
       return;
+    const bool is_single = result.crossings.size () == 2; // one crease runs through: the vertex may be anywhere on it
+    if (is_single)
+      middle = middleOf (result.crossings);
     result.position = minimizeDistances (loop, middle);
-    std::vector<Side> sides;
-    for (const int v : sides_)
-      sides.push_back (sideOf (v));
-    result.has_center =
-        moveToCrease (local_, sides, options_.iso_level, REACH * voxel_, TOLERANCE * voxel_, result.position) &&
-        (result.position - middle).norm () < REACH * voxel_;
+    result.has_center = solve (middle, result.position);
+    if (result.has_center && is_single)
+      moveInside (loop, middle, result);
     if (result.has_center)
       describeCenter (result);
   }
@@ -93,6 +93,67 @@ private:
         if (std::none_of (sides_.begin (), sides_.end (), [&] (int other) { return keyOf (other) == keyOf (v); }))
           sides_.push_back (v);
     }
+  }
+
+  /** \brief Between the places where a crease crosses a loop. Two loops share each of these, so that the vertices of
+   * loops along a crease stand in the order of the loops. */
+  Eigen::Vector3d
+  middleOf (const std::vector<VertexPair> &crossings) const
+  {
+    Eigen::Vector3d sum = Eigen::Vector3d::Zero ();
+    for (const VertexPair &crossing : crossings)
+      sum += 0.5 * (position (crossing.first) + position (crossing.second));
+    return sum / static_cast<double> (crossings.size ());
+  }
+
+  /** \brief Moves a point near to \a middle to the crease or corner between all sides. */
+  bool
+  solve (const Eigen::Vector3d &middle, Eigen::Vector3d &x)
+  {
+    std::vector<Side> sides;
+    for (const int v : sides_)
+      sides.push_back (sideOf (v));
+    return moveToCrease (local_, sides, options_.iso_level, REACH * voxel_, TOLERANCE * voxel_, x) &&
+           (x - middle).norm () < REACH * voxel_;
+  }
+
+  /** \brief Moves the vertex along its crease to where it lies on the inner side of all sides of the loop that the
+   * crease does not cross, so that no triangle is turned over. */
+  void
+  moveInside (const CellLoop &loop, const Eigen::Vector3d &middle, MeshedLoop &result)
+  {
+    constexpr double MARGIN = 0.02, STEEP = 0.1; // voxels; sine between crease and side of the loop
+    const Eigen::Vector3d along =
+        local_.sampleOnSide (result.position, sideOf (sides_.front ()))
+            .gradient.cross (local_.sampleOnSide (result.position, sideOf (sides_.back ())).gradient)
+            .normalized ();
+    double low = -REACH * voxel_, high = -low;
+    const std::size_t n = loop.ring.size ();
+    for (std::size_t i = 0; i < n; ++i)
+    {
+      const int a = loop.ring[i], b = loop.ring[(i + 1) % n];
+      const VertexPair side = orderedPair (a, b);
+      if (std::find (result.crossings.begin (), result.crossings.end (), side) != result.crossings.end ())
+        continue;
+      const Eigen::Vector3d up = (normalOf (a) + normalOf (b)).normalized ();
+      const Eigen::Vector3d inwards = up.cross (position (b) - position (a)).normalized ();
+      const double room = inwards.dot (result.position - position (a)) - MARGIN * voxel_, slope = inwards.dot (along);
+      if (slope > STEEP)
+        low = std::max (low, -room / slope);
+      else if (slope < -STEEP)
+        high = std::min (high, -room / slope);
+    }
+    if (low <= 0.0 && high >= 0.0)
+      return;
+    Eigen::Vector3d moved = result.position + (low > high ? 0.5 * (low + high) : low > 0.0 ? low : high) * along;
+    if (solve (middle, moved))
+      result.position = moved;
+  }
+
+  const Eigen::Vector3d &
+  normalOf (int v) const
+  {
+    return vertices_.normals[static_cast<std::size_t> (v)];
   }
 
   /** \brief Whether the pieces of f on the sides of two vertices turn against each other between them. */

@@ -32,7 +32,7 @@ set_tests_properties(sample.replace_poisson PROPERTIES PASS_REGULAR_EXPRESSION "
 
 add_test(NAME sample.sharp_edges_from_planes
   COMMAND sharp_edges_from_planes ${ERKPA_CUBE} 6 0.6 sharp_edges_from_planes.ply)
-set_tests_properties(sample.sharp_edges_from_planes PROPERTIES PASS_REGULAR_EXPRESSION "12 sharp edges, [1-9]")
+set_tests_properties(sample.sharp_edges_from_planes PROPERTIES PASS_REGULAR_EXPRESSION "12 sharp edges, 8 corners, [1-9]")
 
 # 1.5 above the middle of the upper face
 add_test(NAME sample.evaluate_field
