@@ -109,7 +109,7 @@ main (int argc, char **argv)
   }
   const Cloud::Ptr cloud = prepare (image);
   erkpa::ERKPA<pcl::PointXYZRGB> erkpa;
-  erkpa.setInputCloud (cloud); // with the image's sensor_origin_, to which the normals will point
+  erkpa.setInputCloud (cloud);              // with the image's sensor_origin_, to which the normals will point
   erkpa.setFaceTolerance (2.0 * THRESHOLD); // towards its edges a face as the sensor sees it bends
   Cloud::Ptr rest = cloud;
   for (pcl::ModelCoefficients plane; takePlane (rest, plane);)

@@ -143,6 +143,7 @@ respectSharpEdges (const NeighborSearch &search, Options &options, OrientedPoint
   if (!sharp.automatic && sharp.faces.empty () && surfaces.empty ())
     return {};
   const int threads = options.polygonizer.threads;
+  const std::vector<Eigen::Vector3f> given = points.normals;
   if (options.normals.sharpen)
   {
     const StageClock clock (report.seconds_normals);
@@ -155,6 +156,9 @@ respectSharpEdges (const NeighborSearch &search, Options &options, OrientedPoint
     outcome = findSharpSurfaces (points, search, sharp, threads, found);
   if (outcome.ok () && !sharp.faces.empty ())
     outcome = sharpEdgesFromFaces (points, sharp.faces, sharp.face_tolerance, between);
+  // Faces are told apart by smoothed normals, fitted by those given: fits average noise without looking over edges.
+  if (report.normals.smoothed && !report.normals.sharpened)
+    points.normals = given;
   found.insert (found.end (), between.begin (), between.end ());
   report.sharp_surfaces = found;
   surfaces.insert (surfaces.end (), found.begin (), found.end ());

@@ -35,7 +35,8 @@ estimateNormals (OrientedPoints &points, const NeighborSearch &search, const Nor
 struct RefinedNormals
 {
   bool sharpened = false; ///< normals smeared across edges became those of one face each
-  bool smoothed = false;  ///< noise was taken out of the normals
+  bool smoothed =
+      false; ///< noise was taken out of the normals, with which faces are told apart; the field keeps those given
 };
 
 /** \brief Make normals that respect sharp edges: each of the face its point is on.

@@ -129,7 +129,7 @@ TEST_F (SharpEdgeOptions, FindSharpEdgesAndSayHowMany)
   EXPECT_EQ (sharp["normals_smoothed"], false);
   EXPECT_GT (report ()["seconds"]["sharp"], 0.0);
   for (const std::string &words : {"found " + std::to_string (sharp["found"].get<int> ()) + " sharp edges\n",
-                                  std::to_string (sharp["creases"].get<int> ()) + " creases, 8 corners\n"})
+                                   std::to_string (sharp["creases"].get<int> ()) + " creases, 8 corners\n"})
     EXPECT_NE (result.out.find (words), std::string::npos) << result.out;
 }
 
