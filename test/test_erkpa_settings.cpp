@@ -220,3 +220,71 @@ TEST (Erkpa, ReadsFieldsOfRunTimeCloudsWithPaddedRowsAndRefusesBadOnes)
   EXPECT_EQ (erkpa::reconstruct (padded, options, of_padded, report).status, Status::BAD_CLOUD);
   expectEmpty (of_padded);
 }
+
+TEST (Erkpa, KnowsWhereItsSurfaceIsToBeSharp)
+{
+  ERKPA<pcl::PointNormal> erkpa;
+  EXPECT_FALSE (erkpa.getAutomaticSharpEdges ());
+  EXPECT_EQ (erkpa.getSharpAngle (), 25.0);
+  EXPECT_TRUE (erkpa.getSharpenNormals ());
+  EXPECT_FALSE (erkpa.getSplitNormals ());
+  erkpa.setSharpAngle (40.0);
+  erkpa.setSharpenNormals (false);
+  erkpa.setSplitNormals (true);
+  erkpa.setFaceTolerance (0.01);
+  EXPECT_EQ (erkpa.getOptions ().sharp.angle, 40.0);
+  EXPECT_FALSE (erkpa.getOptions ().normals.sharpen);
+  EXPECT_TRUE (erkpa.getOptions ().polygonizer.split_normals);
+  EXPECT_EQ (erkpa.getOptions ().sharp.face_tolerance, 0.01);
+  EXPECT_TRUE (erkpa.addFace (coefficients ({0.0f, 0.0f, 2.0f, 1.0f})));
+  EXPECT_TRUE (erkpa.addFace (coefficients ({0.0f, 0.0f, 0.0f, 0.0f, 0.0f, 1.0f, 0.5f}), pcl::SACMODEL_CYLINDER));
+  EXPECT_FALSE (erkpa.addFace (coefficients ({0.0f, 0.0f, 0.0f, 1.0f})));
+  EXPECT_FALSE (erkpa.addFace (coefficients ({0.0f, 0.0f, 0.0f, 1.0f}), pcl::SACMODEL_LINE));
+  ASSERT_EQ (erkpa.getFaces ().size (), 2u);
+  EXPECT_EQ (erkpa.getFaces ()[1].model, erkpa::SurfaceModel::CYLINDER);
+  erkpa.clearFaces ();
+  EXPECT_TRUE (erkpa.getFaces ().empty ());
+}
+
+TEST (Erkpa, KeepsThePlanesOfSharpEdgesAmongOtherSurfaces)
+{
+  ERKPA<pcl::PointNormal> erkpa;
+  erkpa.addSharpEdge (coefficients ({1, 0, 0, 0}));
+  erkpa.addSharpEdge (coefficients ({0, 0, 0, 1}), pcl::SACMODEL_SPHERE);
+  erkpa.addSharpEdge (coefficients ({0, 2, 0, 0}));
+  EXPECT_FALSE (erkpa.removeSharpSurface (3));
+  EXPECT_TRUE (erkpa.removeSharpSurface (0));
+  ASSERT_EQ (erkpa.getSharpSurfaces ().size (), 2u);
+  ASSERT_EQ (erkpa.getSharpEdges ().size (), 1u);
+  EXPECT_EQ (erkpa.getSharpEdges ()[0].values[1], 2.0f);
+  erkpa.setSharpSurfaces ({nullptr, erkpa.getSharpSurfaces ()[1], shapes::plane ({0.0, 0.0, 1.0, 0.0})});
+  EXPECT_EQ (erkpa.getSharpSurfaces ().size (), 2u);
+  EXPECT_EQ (erkpa.getSharpEdges ().size (), 1u) << "only those given as coefficients";
+  erkpa.setSharpSurfaces (erkpa.getSharpSurfaces ()); // its own
+  EXPECT_EQ (erkpa.getSharpSurfaces ().size (), 2u);
+  erkpa.setSharpSurfaces ({});
+  EXPECT_TRUE (erkpa.getSharpEdges ().empty ());
+}
+
+TEST (Erkpa, RefusesAnAngleAndAToleranceThatMakeNoSense)
+{
+  ERKPA<pcl::PointNormal> erkpa;
+  erkpa.setInputCloud (shapes::cloud<pcl::PointNormal> (shapes::sphere (500)));
+  erkpa.setAutomaticSharpEdges (true);
+  pcl::PolygonMesh mesh = usedMesh ();
+  for (const double angle : {0.0, 4.9, 91.0, double (NOT_A_NUMBER)})
+  {
+    erkpa.setSharpAngle (angle);
+    erkpa.reconstruct (mesh);
+    EXPECT_EQ (erkpa.getStatus (), Status::INVALID_SETTING) << angle;
+    EXPECT_NE (erkpa.getStatusMessage ().find ("5 to 90"), std::string::npos);
+    expectEmpty (mesh);
+    EXPECT_TRUE (erkpa.getCreases ().empty ());
+  }
+  erkpa.setSharpAngle (25.0);
+  ASSERT_TRUE (erkpa.addFace (coefficients ({0.0f, 0.0f, 1.0f, 0.0f})));
+  erkpa.setFaceTolerance (-1.0);
+  erkpa.reconstruct (mesh);
+  EXPECT_EQ (erkpa.getStatus (), Status::INVALID_SETTING);
+  EXPECT_NE (erkpa.getStatusMessage ().find ("tolerance"), std::string::npos);
+}
