@@ -14,7 +14,7 @@ moveToCrease (LocalField &local, const std::vector<Side> &sides, double iso, dou
   constexpr double PARALLEL = 0.05; // sine of about half the angle at which pieces count as one
   const Eigen::Vector3d start = x;
   const auto count = static_cast<Eigen::Index> (sides.size ());
-  Eigen::Matrix<double, Eigen::Dynamic, 3> gradients (count, 3);
+  Eigen::MatrixXd gradients (count, 3);
   Eigen::VectorXd values (count);
   for (int step = 0; step < STEPS; ++step)
   {
@@ -26,8 +26,7 @@ moveToCrease (LocalField &local, const std::vector<Side> &sides, double iso, dou
       values[i] = iso - sample.value;
       gradients.row (i) = sample.gradient.transpose ();
     }
-    Eigen::JacobiSVD<Eigen::Matrix<double, Eigen::Dynamic, 3>> svd (gradients,
-                                                                    Eigen::ComputeThinU | Eigen::ComputeThinV);
+    Eigen::JacobiSVD<Eigen::MatrixXd> svd (gradients, Eigen::ComputeThinU | Eigen::ComputeThinV);
     svd.setThreshold (PARALLEL);
     const Eigen::Vector3d move = svd.solve (values);
     if (!((x + move - start).norm () < reach))

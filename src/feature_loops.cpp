@@ -175,7 +175,7 @@ private:
   Eigen::Vector3d
   minimizeDistances (const CellLoop &loop, const Eigen::Vector3d &middle) const
   {
-    Eigen::Matrix<double, Eigen::Dynamic, 3> planes (loop.ring.size (), 3);
+    Eigen::MatrixXd planes (loop.ring.size (), 3);
     Eigen::VectorXd distances (loop.ring.size ());
     for (std::size_t i = 0; i < loop.ring.size (); ++i)
     {
@@ -184,7 +184,7 @@ private:
       planes.row (row) = normal.transpose ();
       distances[row] = normal.dot (position (loop.ring[i]) - middle);
     }
-    Eigen::JacobiSVD<Eigen::Matrix<double, Eigen::Dynamic, 3>> svd (planes, Eigen::ComputeThinU | Eigen::ComputeThinV);
+    Eigen::JacobiSVD<Eigen::MatrixXd> svd (planes, Eigen::ComputeThinU | Eigen::ComputeThinV);
     svd.setThreshold (0.1);
     const Eigen::Vector3d step = svd.solve (distances);
     const double length = step.norm ();
