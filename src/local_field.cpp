@@ -160,95 +160,44 @@ LocalField::fitSelected (const Eigen::Vector3d &x, Task task)
   return result_.isDefined ();
 }
 
+/** \brief The nodes near x that belong to a face have a say in how the faces combine. */
+void
+LocalField::startVote (const Eigen::Vector3d &x, int groups)
+{
+  vote_.start (support_.radius ());
+  for (std::size_t slot = 0; slot < support_.points ().size (); ++slot)
+  {
+    const double t = std::sqrt (support_.squaredDistance (slot)) / (FaceGroups::REACH * vote_.radius ());
+    const int group = t < 1.0 ? groups_.groupOfSlot (static_cast<int> (slot)) : -1;
+    if (group >= 0 && group < groups && support_.points ()[slot].side == 0)
+      vote_.addVoter ({static_cast<int> (slot), (support_.position (slot) - x) / vote_.radius (), 1.0 - t});
+  }
+}
+
 bool
 LocalField::evaluateFaces (const Eigen::Vector3d &x, Task task)
 {
-  ballot_.clear ();
-  ballot_radius_ = support_.radius ();
   const int count = std::min (groups_.count (), FaceTree::MAX_FACES);
-  for (std::size_t slot = 0; slot < support_.points ().size (); ++slot)
-  {
-    const double t = std::sqrt (support_.squaredDistance (slot)) / (FaceGroups::REACH * ballot_radius_);
-    const int group = t < 1.0 ? groups_.groupOfSlot (static_cast<int> (slot)) : -1;
-    if (group >= 0 && group < count && support_.points ()[slot].side == 0)
-      ballot_.push_back ({static_cast<int> (slot), (support_.position (slot) - x) / ballot_radius_, 1.0 - t});
-  }
-  pieces_.clear ();
-  values_.clear ();
-  slopes_.clear ();
-  heights_.clear ();
+  startVote (x, count);
   for (int group = 0; group < count; ++group)
     if (support_.selectPart (x, groups_.members (group)) && fitSelected (x, Task::HEIGHTS))
-    {
-      pieces_.push_back (group);
-      values_.push_back (result_.value);
-    }
+      vote_.addFace (group, result_.value, slope_, heights_);
   result_ = FieldSample ();
   thickening_ = 0.0;
-  if (!pieces_.empty ())
+  if (!vote_.isEmpty ())
   {
-    const FaceTree &tree = electTree ();
-    const auto winner = static_cast<std::size_t> (tree.winner (values_.data ()));
-    thickening_ = thickeningAt (tree, winner);
-    support_.selectPart (x, groups_.members (pieces_[winner]));
+    const FaceTree &tree = vote_.electTree ();
+    const std::size_t winner = vote_.winnerOf (tree);
+    thickening_ = vote_.thickening (tree, least_wall_);
+    support_.selectPart (x, groups_.members (vote_.groupOf (winner)));
     face_ = nearestFace ();
     if (task != Task::VALUE)
       fitSelected (x, task);
     side_key_ = sideKeyOf (face_, enrichment_.sideKey ());
-    result_.value = values_[winner] - thickening_;
+    result_.value = vote_.valueOf (winner) - thickening_;
   }
   support_.select (x);
   return result_.isDefined ();
-}
-
-/** \brief Of all ways to combine the faces take the one that is nearest to zero at the nodes. */
-const FaceTree &
-LocalField::electTree () const
-{
-  const std::vector<FaceTree> &trees = treesOf (static_cast<int> (pieces_.size ()));
-  const FaceTree *best = &trees.front ();
-  double least = HUGE_VAL;
-  std::array<double, FaceTree::MAX_FACES> heights{};
-  for (const FaceTree &tree : trees)
-  {
-    double sum = 0.0;
-    for (std::size_t i = 0; i < ballot_.size () && sum < least; ++i)
-    {
-      for (std::size_t f = 0; f < pieces_.size (); ++f)
-        heights[f] = heights_[f * ballot_.size () + i];
-      sum += ballot_[i].weight * std::abs (heights[static_cast<std::size_t> (tree.winner (heights.data ()))]);
-    }
-    if (sum < least)
-    {
-      least = sum;
-      best = &tree;
-    }
-  }
-  return *best;
-}
-
-/** \brief What is to be taken from f at x, so that a thin wall (a thin gap: less than nothing) looks thick enough.
- *
- * Between parallel faces the sum of their values is the thickness. Where they meet in an acute edge, it goes through
- * zero there; beyond, the thickening shall end soon.
- */
-double
-LocalField::thickeningAt (const FaceTree &tree, std::size_t winner) const
-{
-  constexpr double OPPOSITE = -0.7, FADE = 8.0;
-  double most = 0.0;
-  for (std::size_t other = 0; other < pieces_.size () && least_wall_ > 0.0; ++other)
-  {
-    const double cosine = slopes_[winner].dot (slopes_[other]);
-    if (other == winner || cosine > OPPOSITE * slopes_[winner].norm () * slopes_[other].norm ())
-      continue;
-    const double side = tree.takesLarger (static_cast<int> (winner), static_cast<int> (other)) ? -1.0 : 1.0;
-    const double thickness = side * (values_[winner] + values_[other]);
-    const double half = 0.5 * least_wall_ + (thickness > 0.0 ? -0.5 : FADE) * thickness;
-    if (half > std::abs (most))
-      most = -side * half;
-  }
-  return most;
 }
 
 LocalSample
@@ -343,10 +292,12 @@ LocalField::fitWith (Task task)
   FieldFit<BasisT, Size, MaxSize> fit (field_.points (), field_.options ().constraint, support_, enrichment_);
   result_.value = fit.value ();
   if (task == Task::HEIGHTS)
-    slopes_.push_back (fit.slope ());
-  if (task == Task::HEIGHTS)
-    for (const Vote &node : ballot_)
-      heights_.push_back (fit.heightAt (node.slot, node.u * (ballot_radius_ / support_.radius ())));
+  {
+    slope_ = fit.slope ();
+    heights_.clear ();
+    for (const FaceVote::Voter &voter : vote_.voters ())
+      heights_.push_back (fit.heightAt (voter.slot, voter.u * (vote_.radius () / support_.radius ())));
+  }
   if (task == Task::GRADIENT)
     result_.gradient = fit.gradient ();
   else if (task == Task::SHAPE_FUNCTIONS)

@@ -3,7 +3,7 @@
 
 #include "enrichment.h"
 #include "face_groups.h"
-#include "face_tree.h"
+#include "face_vote.h"
 #include "support.h"
 
 #include <erkpa/implicit_field.h>
@@ -139,7 +139,7 @@ private:
   enum class Task
   {
     VALUE,
-    HEIGHTS, ///< the value, and what the fit says at the nodes of the ballot
+    HEIGHTS, ///< the value, and what the fit says at the voters
     GRADIENT,
     SHAPE_FUNCTIONS
   };
@@ -156,11 +156,8 @@ private:
   bool
   evaluateFaces (const Eigen::Vector3d &x, Task task);
 
-  const FaceTree &
-  electTree () const;
-
-  double
-  thickeningAt (const FaceTree &tree, std::size_t winner) const;
+  void
+  startVote (const Eigen::Vector3d &x, int groups);
 
   bool
   fitSelected (const Eigen::Vector3d &x, Task task);
@@ -199,20 +196,10 @@ private:
   Eigen::Vector3d guess_ = Eigen::Vector3d::Zero ();         // unwarped
   Eigen::Matrix3d unwarping_ = Eigen::Matrix3d::Identity (); // Jacobian of warp^-1 at the point last evaluated
   FaceGroups groups_;
-  struct Vote
-  {
-    int slot;
-    Eigen::Vector3d u;
-    double weight;
-  };
-
-  std::vector<Vote> ballot_; // of the nodes that say how faces combine
-  double ballot_radius_ = 0.0;
-  std::vector<int> pieces_;    // the groups that have a fit at the point last evaluated
-  std::vector<double> values_; // of the pieces
-  std::vector<Eigen::Vector3d> slopes_;
+  FaceVote vote_;
+  Eigen::Vector3d slope_ = Eigen::Vector3d::Zero (); // of the fit last asked for its heights
+  std::vector<double> heights_;                      // of that fit at the voters
   double least_wall_ = 0.0, thickening_ = 0.0;
-  std::vector<double> heights_; // piece after piece, of the ballot
   int face_ = -1;
   std::uint64_t side_key_ = 0;
   FieldSample result_;

@@ -1,0 +1,75 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "face_vote.h"
+
+#include <array>
+#include <cmath>
+
+namespace erkpa
+{
+
+void
+FaceVote::start (double radius)
+{
+  radius_ = radius;
+  voters_.clear ();
+  groups_.clear ();
+  values_.clear ();
+  slopes_.clear ();
+  heights_.clear ();
+}
+
+void
+FaceVote::addFace (int group, double value, const Eigen::Vector3d &slope, const std::vector<double> &heights)
+{
+  groups_.push_back (group);
+  values_.push_back (value);
+  slopes_.push_back (slope);
+  heights_.insert (heights_.end (), heights.begin (), heights.end ());
+}
+
+const FaceTree &
+FaceVote::electTree () const
+{
+  const std::vector<FaceTree> &trees = treesOf (static_cast<int> (groups_.size ()));
+  const FaceTree *best = &trees.front ();
+  double least = HUGE_VAL;
+  std::array<double, FaceTree::MAX_FACES> heights{};
+  for (const FaceTree &tree : trees)
+  {
+    double sum = 0.0;
+    for (std::size_t i = 0; i < voters_.size () && sum < least; ++i)
+    {
+      for (std::size_t f = 0; f < groups_.size (); ++f)
+        heights[f] = heights_[f * voters_.size () + i];
+      sum += voters_[i].weight * std::abs (heights[static_cast<std::size_t> (tree.winner (heights.data ()))]);
+    }
+    if (sum < least)
+    {
+      least = sum;
+      best = &tree;
+    }
+  }
+  return *best;
+}
+
+double
+FaceVote::thickening (const FaceTree &tree, double least_wall) const
+{
+  constexpr double OPPOSITE = -0.7, FADE = 8.0;
+  const std::size_t winner = winnerOf (tree);
+  double most = 0.0;
+  for (std::size_t other = 0; other < groups_.size () && least_wall > 0.0; ++other)
+  {
+    const double cosine = slopes_[winner].dot (slopes_[other]);
+    if (other == winner || cosine > OPPOSITE * slopes_[winner].norm () * slopes_[other].norm ())
+      continue;
+    const double side = tree.takesLarger (static_cast<int> (winner), static_cast<int> (other)) ? -1.0 : 1.0;
+    const double thickness = side * (values_[winner] + values_[other]);
+    const double half = 0.5 * least_wall + (thickness > 0.0 ? -0.5 : FADE) * thickness;
+    if (half > std::abs (most))
+      most = -side * half;
+  }
+  return most;
+}
+
+} // namespace erkpa

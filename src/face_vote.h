@@ -1,0 +1,101 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "face_tree.h"
+
+#include <Eigen/Core>
+
+#include <cstddef>
+#include <vector>
+
+namespace erkpa
+{
+
+/** \brief The nodes around an evaluation point say how the faces there combine to one surface. */
+class FaceVote
+{
+public:
+  /** \brief A node that has a say. */
+  struct Voter
+  {
+    int slot;          ///< among the gathered value points
+    Eigen::Vector3d u; ///< (x_i - x) / ε
+    double weight;
+  };
+
+  /** \brief Forget voters and faces.
+   * \param[in] radius ε, the unit of the voters' coordinates
+   */
+  void
+  start (double radius);
+
+  void
+  addVoter (const Voter &voter)
+  {
+    voters_.push_back (voter);
+  }
+
+  const std::vector<Voter> &
+  voters () const
+  {
+    return voters_;
+  }
+
+  double
+  radius () const
+  {
+    return radius_;
+  }
+
+  /** \brief What the fit of a face says: at x, of its slope there, and at each voter. */
+  void
+  addFace (int group, double value, const Eigen::Vector3d &slope, const std::vector<double> &heights);
+
+  bool
+  isEmpty () const
+  {
+    return groups_.empty ();
+  }
+
+  int
+  groupOf (std::size_t face) const
+  {
+    return groups_[face];
+  }
+
+  double
+  valueOf (std::size_t face) const
+  {
+    return values_[face];
+  }
+
+  /** \brief Of all ways to combine the faces the one that is nearest to zero at the voters. */
+  const FaceTree &
+  electTree () const;
+
+  /** \brief The face whose value is that of the tree at x. */
+  std::size_t
+  winnerOf (const FaceTree &tree) const
+  {
+    return static_cast<std::size_t> (tree.winner (values_.data ()));
+  }
+
+  /** \brief What is to be taken from f at x, so that a thin wall (a thin gap: less than nothing) looks thick enough.
+   *
+   * Between parallel faces the sum of their values is the thickness. Where they meet in an acute edge, it goes through
+   * zero there; beyond, the thickening shall end soon.
+   * \param[in] least_wall the thickness that walls and gaps shall have at least, a length; 0 = leave them
+   */
+  double
+  thickening (const FaceTree &tree, double least_wall) const;
+
+private:
+  double radius_ = 0.0;
+  std::vector<Voter> voters_;
+  std::vector<int> groups_;             // of the faces
+  std::vector<double> values_;          // at x
+  std::vector<Eigen::Vector3d> slopes_; // at x
+  std::vector<double> heights_;         // at the voters, face after face
+};
+
+} // namespace erkpa
