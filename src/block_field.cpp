@@ -123,6 +123,34 @@ BlockField::gather (const Eigen::Vector3d &center, double extent)
   return true;
 }
 
+/** \brief A distance within which there are k of the gathered nodes, little more than that of the k-th.
+ *
+ * The exact one is found for every point by itself; a few counts are quicker here than a selection.
+ * \param[in] guess a distance that may do; the result is larger where it does not
+ */
+double
+BlockField::boundOfKth (std::size_t k, double guess) const
+{
+  const auto count_within = [this] (double distance)
+  {
+    const auto squared = static_cast<float> (distance * distance);
+    int count = 0;
+    for (std::size_t i = 0; i < found_; ++i)
+      count += squared_[i] <= squared ? 1 : 0;
+    return static_cast<std::size_t> (count);
+  };
+  constexpr int STEPS = 5;
+  double low = 0.0, high = guess;
+  if (count_within (guess) < k)
+    return HUGE_VAL;
+  for (int step = 0; step < STEPS; ++step)
+  {
+    const double middle = 0.5 * (std::max (low, 0.5 * high) + high);
+    (count_within (middle) < k ? low : high) = middle;
+  }
+  return high;
+}
+
 /** \brief See Support::gather (). */
 bool
 BlockField::findReach (const Eigen::Vector3d &center, double extent)
@@ -137,15 +165,13 @@ BlockField::findReach (const Eigen::Vector3d &center, double extent)
   }
   constexpr double FARTHEST = 1e18; // its square is still a float
   const auto k = static_cast<std::size_t> (settings_.k);
-  double guess = 1.2 * (center_radius_ > 0.0 ? std::min (center_radius_, 2.0 * unit_) : unit_);
+  double guess = 1.15 * (center_radius_ > 0.0 ? std::min (center_radius_, 2.0 * unit_) : unit_);
   for (; center.norm () < FARTHEST && guess < FARTHEST; guess *= 2.0)
   {
     gatherNodes (center, guess + 2.0 * extent);
     if (found_ < k)
       continue;
-    const auto kth = squared_.begin () + static_cast<std::ptrdiff_t> (k - 1);
-    std::nth_element (squared_.begin (), kth, squared_.begin () + static_cast<std::ptrdiff_t> (found_));
-    center_radius_ = std::sqrt (static_cast<double> (*kth));
+    center_radius_ = boundOfKth (k, guess);
     if (center_radius_ <= guess)
       return true;
   }

@@ -134,6 +134,9 @@ private:
   void
   gatherSharpSurfaces ();
 
+  double
+  boundOfKth (std::size_t k, double guess) const;
+
   bool
   findReach (const Eigen::Vector3d &center, double extent);
 
@@ -193,7 +196,7 @@ private:
   std::vector<std::pair<const SharpSurface *, bool>> near_surfaces_; // and whether it is a plane
   double unit_, inverse_unit_;                                       // of the lanes' lengths
   Eigen::Vector3d center_ = Eigen::Vector3d::Zero ();
-  double center_radius_ = 0.0; // ε there
+  double center_radius_ = 0.0; // ε there, at most
   double reach_ = 0.0;         // how far around it the nodes are gathered
 
   // The gathered nodes. Arrays keep their memory from ball to ball.

@@ -59,7 +59,8 @@ ImplicitField::ImplicitField (std::shared_ptr<const OrientedPoints> points, Neig
     options_.order = options_.constraint == Constraint::FUNCTIONAL ? Order::LINEAR : Order::SPHERICAL;
   double spacing = 0.0;
   const std::shared_ptr<const PointGrid> grid = makePointGrid (points_->positions, threads, spacing);
-  const int k = chooseSupportSize (*points_, *makeGridSearch (grid));
+  grid_search_ = makeGridSearch (grid);
+  const int k = chooseSupportSize (*points_, *grid_search_);
   if (options_.k == 0 && SupportSize::kindOf (*points_, options_) == SupportSize::Kind::NEAREST)
     options_.k = k;
   support_size_ = std::make_shared<const SupportSize> (*points_, options_, spacing);
@@ -142,7 +143,7 @@ ImplicitField::checkOptions (const FieldOptions &options)
 double
 ImplicitField::value (const Eigen::Vector3d &x) const
 {
-  LocalField local (*this);
+  LocalField local (*this, *search_);
   const Eigen::Vector3d position = x - points_->origin;
   local.gather (position, 0.0);
   return local.value (position);
@@ -151,7 +152,7 @@ ImplicitField::value (const Eigen::Vector3d &x) const
 FieldSample
 ImplicitField::sample (const Eigen::Vector3d &x) const
 {
-  LocalField local (*this);
+  LocalField local (*this, *search_);
   const Eigen::Vector3d position = x - points_->origin;
   local.gather (position, 0.0);
   return local.sample (position);
@@ -160,7 +161,7 @@ ImplicitField::sample (const Eigen::Vector3d &x) const
 std::vector<ShapeFunction>
 ImplicitField::shapeFunctions (const Eigen::Vector3d &x) const
 {
-  LocalField local (*this);
+  LocalField local (*this, *search_);
   const Eigen::Vector3d position = x - points_->origin;
   local.gather (position, 0.0);
   return local.shapeFunctions (position);
@@ -190,7 +191,7 @@ ImplicitField::evaluate (const std::vector<Eigen::Vector3d> &points, std::vector
       starts.push_back (i);
   starts.push_back (order.size ());
 
-  const auto make_worker = [this] { return LocalField (*this); };
+  const auto make_worker = [this] { return LocalField (*this, *search_); };
   parallelFor (starts.size () - 1, threads, make_worker,
                [&] (LocalField &local, std::size_t group)
                {

@@ -49,7 +49,13 @@ class LocalField
 public:
   /** \param[in] unwarped look at the field as it is before its warp */
   explicit LocalField (const ImplicitField &field, bool unwarped = false)
-      : field_ (field), warp_ (unwarped ? nullptr : field.options ().warp.get ()), support_ (field),
+      : LocalField (field, field.gridSearch (), unwarped)
+  {
+  }
+
+  /** \param[in] search over the field's nodes */
+  LocalField (const ImplicitField &field, const NeighborSearch &search, bool unwarped = false)
+      : field_ (field), warp_ (unwarped ? nullptr : field.options ().warp.get ()), support_ (field, search),
         enrichment_ (field), groups_ (field.faces ())
   {
   }

@@ -31,9 +31,14 @@ public:
   withinRadius (const Eigen::Vector3f &x, double radius, std::vector<int> &indices,
                 std::vector<float> &squared_distances) const override
   {
-    std::vector<std::pair<float, int>> found;
-    grid_->withinRadius (x.cast<double> (), radius, found);
-    store (found, indices, squared_distances);
+    indices.clear ();
+    squared_distances.clear ();
+    grid_->visitWithin (x.cast<double> (), radius,
+                        [&] (float squared, int index)
+                        {
+                          indices.push_back (index);
+                          squared_distances.push_back (squared);
+                        });
   }
 
 private:
@@ -145,19 +150,7 @@ void
 PointGrid::withinRadius (const Eigen::Vector3d &x, double radius, std::vector<std::pair<float, int>> &found) const
 {
   found.clear ();
-  const Eigen::Vector3f center = x.cast<float> ();
-  const auto limit = static_cast<float> (radius * radius);
-  visitNear (x, radius,
-             [&] (std::size_t first, std::size_t last)
-             {
-               for (std::size_t place = first; place < last; ++place)
-               {
-                 const Eigen::Vector3f p (coordinates_[0][place], coordinates_[1][place], coordinates_[2][place]);
-                 const float squared = (p - center).squaredNorm ();
-                 if (squared <= limit)
-                   found.emplace_back (squared, static_cast<int> (index_[place]));
-               }
-             });
+  visitWithin (x, radius, [&] (float squared, int index) { found.emplace_back (squared, index); });
 }
 
 void

@@ -20,8 +20,8 @@ constexpr double ROUNDING = 1e-5;  // searches measure in float: this share of a
 
 } // namespace
 
-Support::Support (const ImplicitField &field)
-    : field_ (field), size_ (field.supportSize ()),
+Support::Support (const ImplicitField &field, const NeighborSearch &search)
+    : field_ (field), search_ (search), size_ (field.supportSize ()),
       has_shapes_ (!field.points ().shapes.empty () || field.options ().flatten < 1.0)
 {
 }
@@ -75,7 +75,7 @@ Support::search (const Eigen::Vector3d &center, double reach)
   reach_ = reach;
   const double all = reach + field_.largestOffset ();
   const double rounding = ROUNDING * (all + center.norm ());
-  field_.search ().withinRadius (center.cast<float> (), all + rounding, candidates_, found_);
+  search_.withinRadius (center.cast<float> (), all + rounding, candidates_, found_);
 }
 
 /** \brief Search as far as points of the ball reach to their k-th nodes.

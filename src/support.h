@@ -38,7 +38,8 @@ struct SupportNode
 class Support
 {
 public:
-  explicit Support (const ImplicitField &field);
+  /** \param[in] search finds the nodes: the field's own, or its quick one, which finds the same */
+  Support (const ImplicitField &field, const NeighborSearch &search);
 
   /** \brief Gather all nodes that points within \a extent of \a center (local frame) can reach. */
   void
@@ -197,6 +198,7 @@ private:
   }
 
   const ImplicitField &field_;
+  const NeighborSearch &search_;
   const SupportSize &size_;
   bool has_shapes_;
   Eigen::Vector3d center_ = Eigen::Vector3d::Zero (); // of the ball gathered for

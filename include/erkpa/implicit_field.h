@@ -266,6 +266,13 @@ public:
     return !values_.empty ();
   }
 
+  /** \brief Finds the same nodes as search (), without a tree: for the many queries of a grid. */
+  const NeighborSearch &
+  gridSearch () const
+  {
+    return *grid_search_;
+  }
+
   /** \brief The nodes sorted in space, for evaluations of whole blocks. */
   const NodeTable &
   nodeTable () const
@@ -313,6 +320,7 @@ private:
   std::vector<int> enriching_places_;
   std::shared_ptr<const FaceMap> faces_;
   std::shared_ptr<const NodeTable> node_table_;
+  NeighborSearch::ConstPtr grid_search_;
   double typical_radius_ = 0.0;
   double spacing_ = 0.0;
   double feature_size_ = 0.0;
