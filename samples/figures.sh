@@ -12,7 +12,7 @@ out="$repo/build/figures"
 data=$(cd "${1:-.}" && pwd)
 
 "$repo/src/cmake/apt_install.sh" g++ make cmake pkg-config \
-  libpcl-dev libeigen3-dev libboost-program-options-dev nlohmann-json3-dev python3-vtk9 python3-numpy xvfb xauth
+  libpcl-dev libeigen3-dev libboost-program-options-dev nlohmann-json3-dev libxsimd-dev python3-vtk9 python3-numpy xvfb xauth
 
 cmake -S "$repo" -B "$out/build" -DERKPA_BUILD_TESTS=OFF --log-level=WARNING
 cmake --build "$out/build" --parallel "$("$repo/src/cmake/build_jobs.sh")" --target erkpa_reconstruct bend_and_twist

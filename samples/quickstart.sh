@@ -10,7 +10,7 @@ out="$repo/build/quickstart"
 archive=/usr/share/doc/libcgal-dev/data.tar.gz
 
 "$repo/src/cmake/apt_install.sh" g++ make cmake pkg-config \
-  libpcl-dev libeigen3-dev libboost-program-options-dev nlohmann-json3-dev libcgal-demo pcl-tools
+  libpcl-dev libeigen3-dev libboost-program-options-dev nlohmann-json3-dev libxsimd-dev libcgal-demo pcl-tools
 
 cmake -S "$repo" -B "$out/build" -DERKPA_BUILD_SAMPLES=OFF -DERKPA_BUILD_TESTS=OFF --log-level=WARNING
 cmake --build "$out/build" --parallel "$("$repo/src/cmake/build_jobs.sh")"

@@ -19,6 +19,19 @@ FaceGroups::gather (const Eigen::Vector3d &center, double extent)
                       [this] (int m) { return faces_->meetings ()[static_cast<std::size_t> (m)].surface >= 0; });
 }
 
+bool
+FaceGroups::hasSeparationAt (const Eigen::Vector3d &x) const
+{
+  return std::any_of (near_.begin (), near_.end (),
+                      [&] (int m)
+                      {
+                        const Meeting &meeting = faces_->meetings ()[static_cast<std::size_t> (m)];
+                        const double reach = meeting.reach;
+                        return meeting.surface >= 0 &&
+                               (meeting.position.cast<double> () - x).squaredNorm () <= reach * reach;
+                      });
+}
+
 void
 FaceGroups::assign (const Support &support)
 {

@@ -27,6 +27,10 @@ public:
   void
   assign (const Support &support);
 
+  /** \brief Whether faces are kept apart in reach of \a x, which is in the ball that was gathered for. */
+  bool
+  hasSeparationAt (const Eigen::Vector3d &x) const;
+
   /** \brief Group the nodes as seen from \a x; false where there are no two groups in its support.
    * \param[in] support with the support at x selected
    */

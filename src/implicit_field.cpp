@@ -3,6 +3,7 @@
 
 #include "face_map.h"
 #include "local_field.h"
+#include "node_table.h"
 #include "noise.h"
 #include "support_size.h"
 #include "threads.h"
@@ -56,8 +57,9 @@ ImplicitField::ImplicitField (std::shared_ptr<const OrientedPoints> points, Neig
 {
   if (options_.order == Order::AUTOMATIC)
     options_.order = options_.constraint == Constraint::FUNCTIONAL ? Order::LINEAR : Order::SPHERICAL;
-  const int k = chooseSupportSize (*points_, *search_);
-  const double spacing = measureSpacing (points_->positions, *search_);
+  double spacing = 0.0;
+  const std::shared_ptr<const PointGrid> grid = makePointGrid (points_->positions, threads, spacing);
+  const int k = chooseSupportSize (*points_, *makeGridSearch (grid));
   if (options_.k == 0 && SupportSize::kindOf (*points_, options_) == SupportSize::Kind::NEAREST)
     options_.k = k;
   support_size_ = std::make_shared<const SupportSize> (*points_, options_, spacing);
@@ -73,6 +75,7 @@ ImplicitField::ImplicitField (std::shared_ptr<const OrientedPoints> points, Neig
     }
   pencils_ = std::make_shared<const std::vector<Pencil>> (findPencils (enriching_, spacing));
   faces_ = FaceMap::make (*points_, *search_, options_.sharp_surfaces, spacing);
+  node_table_ = std::make_shared<const NodeTable> (*points_, grid, threads);
   if (options_.constraint != Constraint::OFFSURFACE)
     return;
   offsets_ = support_size_->radiiOfNodes (*search_, threads);

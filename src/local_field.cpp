@@ -12,17 +12,6 @@
 namespace erkpa
 {
 
-namespace
-{
-
-std::uint64_t
-sideKeyOf (int face, std::uint64_t enrichment)
-{
-  return static_cast<std::uint64_t> (face + 1) << 40 ^ enrichment;
-}
-
-} // namespace
-
 void
 LocalField::gather (const Eigen::Vector3d &center, double extent)
 {

@@ -59,25 +59,6 @@ checkOptions (const PolygonizerOptions &options)
   return {};
 }
 
-/** \brief Marks the edges that carry the vertices of the active cells. */
-void
-markCutEdges (const std::vector<GridPoint> &cells, SparseGrid &grid)
-{
-  for (const GridPoint &cell : cells)
-  {
-    const std::array<double, 8> values = grid.cornerValues (cell);
-    for (int e = 0; e < 12; ++e)
-    {
-      const CellEdge edge = cellEdge (e);
-      const int other = edge.corner | 1 << edge.axis;
-      if ((values[static_cast<std::size_t> (edge.corner)] < 0.0) == (values[static_cast<std::size_t> (other)] < 0.0))
-        continue;
-      const GridPlace place = grid.place (cell + cornerOffset (edge.corner));
-      grid.block (place.block).cut[static_cast<std::size_t> (edge.axis)] |= place.bit ();
-    }
-  }
-}
-
 /** \brief Put a vertex in the middle of each loop, with triangles around it. */
 void
 meshCentered (const std::vector<CellLoop> &loops, std::vector<Triangle> &triangles, SurfaceVertices &vertices)
@@ -232,7 +213,7 @@ polygonize (const ImplicitField &field, const PolygonizerOptions &options, Trian
   outcome = tracker.track ();
   if (!outcome.ok ())
     return outcome;
-  markCutEdges (tracker.activeCells (), grid);
+  grid.markCutEdges ();
   SurfaceVertices vertices;
   placeVertices (field, options, grid, vertices, report, partOf (progress, 0.5, 0.5));
 

@@ -5,40 +5,57 @@
 #include <pcl/point_types.h>
 #include <pcl/search/kdtree.h>
 
+#include <mutex>
+#include <utility>
+
 namespace erkpa
 {
 
 namespace
 {
 
+/** \brief The tree is made when it is first asked: blocks of a plain field do without it. */
 class KdTreeSearch : public NeighborSearch
 {
 public:
-  explicit KdTreeSearch (const std::vector<Eigen::Vector3f> &positions) : tree_ (false)
-  {
-    const pcl::PointCloud<pcl::PointXYZ>::Ptr cloud (new pcl::PointCloud<pcl::PointXYZ>);
-    cloud->reserve (positions.size ());
-    for (const Eigen::Vector3f &p : positions)
-      cloud->push_back (pcl::PointXYZ (p.x (), p.y (), p.z ()));
-    tree_.setInputCloud (cloud);
-  }
+  explicit KdTreeSearch (std::vector<Eigen::Vector3f> positions) : positions_ (std::move (positions)), tree_ (false) {}
 
   void
   nearestK (const Eigen::Vector3f &x, int k, std::vector<int> &indices,
             std::vector<float> &squared_distances) const override
   {
-    tree_.nearestKSearch (pcl::PointXYZ (x.x (), x.y (), x.z ()), k, indices, squared_distances);
+    tree ().nearestKSearch (pcl::PointXYZ (x.x (), x.y (), x.z ()), k, indices, squared_distances);
   }
 
   void
   withinRadius (const Eigen::Vector3f &x, double radius, std::vector<int> &indices,
                 std::vector<float> &squared_distances) const override
   {
-    tree_.radiusSearch (pcl::PointXYZ (x.x (), x.y (), x.z ()), radius, indices, squared_distances);
+    tree ().radiusSearch (pcl::PointXYZ (x.x (), x.y (), x.z ()), radius, indices, squared_distances);
   }
 
 private:
-  pcl::search::KdTree<pcl::PointXYZ> tree_;
+  const pcl::search::KdTree<pcl::PointXYZ> &
+  tree () const
+  {
+    std::call_once (is_made_, [this] { makeTree (); });
+    return tree_;
+  }
+
+  void
+  makeTree () const
+  {
+    const pcl::PointCloud<pcl::PointXYZ>::Ptr cloud (new pcl::PointCloud<pcl::PointXYZ>);
+    cloud->reserve (positions_.size ());
+    for (const Eigen::Vector3f &p : positions_)
+      cloud->push_back (pcl::PointXYZ (p.x (), p.y (), p.z ()));
+    tree_.setInputCloud (cloud);
+    positions_ = std::vector<Eigen::Vector3f> ();
+  }
+
+  mutable std::once_flag is_made_;
+  mutable std::vector<Eigen::Vector3f> positions_; // until the tree is made
+  mutable pcl::search::KdTree<pcl::PointXYZ> tree_;
 };
 
 } // namespace

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "sparse_grid.h"
 
+#include "grid_bits.h"
+
 #include <cmath>
 
 namespace erkpa
@@ -60,13 +62,51 @@ SparseGrid::keyOf (const GridPoint &point)
 GridPlace
 SparseGrid::place (const GridPoint &point)
 {
-  const auto [entry, is_new] = index_.try_emplace (keyOf (point), blockCount ());
+  return {placeBlock ({point.x & ~3, point.y & ~3, point.z & ~3}), localOf (point)};
+}
+
+int
+SparseGrid::placeBlock (const GridPoint &first)
+{
+  const auto [entry, is_new] = index_.try_emplace (keyOf (first), blockCount ());
   if (is_new)
   {
-    blocks_.emplace_back ();
-    blocks_.back ().first = {point.x & ~3, point.y & ~3, point.z & ~3};
+    GridBlock &block = blocks_.emplace_back ();
+    block.first = first;
+    block.above.fill (-1);
+    block.below.fill (-1);
+    block.above[0] = entry->second;
   }
-  return {entry->second, localOf (point)};
+  return entry->second;
+}
+
+int
+SparseGrid::placeAbove (int block, int axes)
+{
+  const auto i = static_cast<std::size_t> (axes);
+  const int known = blocks_[static_cast<std::size_t> (block)].above[i];
+  if (known >= 0)
+    return known;
+  const GridPoint offset = cornerOffset (axes), by{4 * offset.x, 4 * offset.y, 4 * offset.z};
+  const int made = placeBlock (blocks_[static_cast<std::size_t> (block)].first + by);
+  blocks_[static_cast<std::size_t> (block)].above[i] = made;
+  if ((axes & (axes - 1)) == 0) // one axis: the way back is known, too
+    blocks_[static_cast<std::size_t> (made)].below[i / 2] = block;
+  return made;
+}
+
+int
+SparseGrid::placeBelow (int block, int axis)
+{
+  const auto i = static_cast<std::size_t> (axis);
+  const int known = blocks_[static_cast<std::size_t> (block)].below[i];
+  if (known >= 0)
+    return known;
+  const GridPoint by{axis == 0 ? -4 : 0, axis == 1 ? -4 : 0, axis == 2 ? -4 : 0};
+  const int made = placeBlock (blocks_[static_cast<std::size_t> (block)].first + by);
+  blocks_[static_cast<std::size_t> (block)].below[i] = made;
+  blocks_[static_cast<std::size_t> (made)].above[std::size_t (1) << i] = block;
+  return made;
 }
 
 GridPlace
@@ -76,32 +116,67 @@ SparseGrid::find (const GridPoint &point) const
   return {entry == index_.end () ? -1 : entry->second, localOf (point)};
 }
 
+GridPlace
+SparseGrid::step (const GridPlace &from, int step) const
+{
+  constexpr int LAST[3] = {3, 3 << 2, 3 << 4}, UNIT[3] = {1, 1 << 2, 1 << 4};
+  int over = 0, local = from.local;
+  for (int axis = 0; axis < 3; ++axis)
+  {
+    if ((step >> axis & 1) == 0)
+      continue;
+    const bool leaves = (local & LAST[axis]) == LAST[axis];
+    over |= leaves ? 1 << axis : 0;
+    local += leaves ? -LAST[axis] : UNIT[axis];
+  }
+  if (over == 0)
+    return {from.block, local};
+  const GridBlock &origin = block (from.block);
+  const int next = origin.above[static_cast<std::size_t> (over)];
+  return next >= 0 ? GridPlace{next, local} : find (pointAt (origin, from.local) + cornerOffset (step));
+}
+
 std::array<double, 8>
-SparseGrid::cornerValues (const GridPoint &cell) const
+SparseGrid::cornerValues (const GridPlace &cell) const
 {
   std::array<double, 8> values;
-  const GridPlace lowest = find (cell);
-  const bool inside = (cell.x & 3) < 3 && (cell.y & 3) < 3 && (cell.z & 3) < 3;
   for (int corner = 0; corner < 8; ++corner)
   {
-    const GridPoint offset = cornerOffset (corner);
-    const GridPlace place =
-        inside ? GridPlace{lowest.block, lowest.local + offset.x + 4 * offset.y + 16 * offset.z} : find (cell + offset);
-    values[static_cast<std::size_t> (corner)] = block (place.block).values[static_cast<std::size_t> (place.local)];
+    const GridPlace place = step (cell, corner);
+    values[static_cast<std::size_t> (corner)] =
+        static_cast<double> (block (place.block).values[static_cast<std::size_t> (place.local)]);
   }
   return values;
 }
 
-bool
-SparseGrid::isNear (const GridPoint &cell) const
+void
+SparseGrid::markCutEdges ()
 {
-  for (int corner = 0; corner < 8; ++corner)
+  const int blocks = blockCount (); // all corners of active cells have theirs
+  for (int index = 0; index < blocks; ++index)
   {
-    const GridPlace place = find (cell + cornerOffset (corner));
-    if (block (place.block).near & place.bit ())
-      return true;
+    const std::uint64_t active = block (index).active;
+    for (int axis = 0; axis < 3 && active != 0; ++axis)
+    {
+      const auto nodes = grid_bits::cornersOf (active, 7 ^ 1 << axis);
+      for (int above = 0; above < 8; ++above)
+        if (nodes[static_cast<std::size_t> (above)] != 0)
+          block (placeAbove (index, above)).cut[static_cast<std::size_t> (axis)] |=
+              nodes[static_cast<std::size_t> (above)];
+    }
   }
-  return false;
+  for (GridBlock &block : blocks_)
+    for (int axis = 0; axis < 3; ++axis)
+    {
+      std::uint64_t &cut = block.cut[static_cast<std::size_t> (axis)];
+      std::uint64_t ends = grid_bits::down (block.inside, axis);
+      if (cut & grid_bits::LAST[axis])
+      {
+        const int above = placeAbove (block.above[0], 1 << axis); // is there: see above
+        ends |= grid_bits::intoBelow (blocks_[static_cast<std::size_t> (above)].inside, axis);
+      }
+      cut &= block.inside ^ ends;
+    }
 }
 
 int

@@ -23,6 +23,13 @@ struct GridPoint
   }
 };
 
+/** \brief Corner 0..7 of a cell: bit 0 is x, bit 1 is y, bit 2 is z. */
+inline GridPoint
+cornerOffset (int corner)
+{
+  return {corner & 1, (corner >> 1) & 1, corner >> 2};
+}
+
 /** \brief 4 x 4 x 4 grid nodes and the cells that start at them; a bit per node or cell. */
 struct GridBlock
 {
@@ -30,14 +37,32 @@ struct GridBlock
   static constexpr int NODES = SIDE * SIDE * SIDE;
 
   GridPoint first;                    ///< lowest node
+  std::array<int, 8> above;           ///< the blocks at + 4 along the axes of the bits; -1 where not looked for yet
+  std::array<int, 3> below;           ///< those at - 4 along each axis, likewise
+  int first_vertex = 0;               ///< index of the block's first vertex
   std::uint64_t known = 0;            ///< nodes whose value is there
   std::uint64_t needed = 0;           ///< nodes whose value is asked for
+  std::uint64_t inside = 0;           ///< known nodes with f < iso
+  std::uint64_t undefined = 0;        ///< known nodes where f is undefined
   std::uint64_t near = 0;             ///< known nodes that are in reach of the data
   std::uint64_t visited = 0;          ///< cells that were or will be looked at
+  std::uint64_t next = 0;             ///< cells that will be looked at in the next front
+  std::uint64_t fresh = 0;            ///< cells that are in this one
   std::uint64_t active = 0;           ///< cells that the surface crosses
   std::array<std::uint64_t, 3> cut{}; ///< per axis: edges from a node that carry a vertex
-  int first_vertex = 0;               ///< index of the block's first vertex
-  std::array<double, NODES> values{}; ///< f - iso, NaN where f is undefined
+  std::array<float, NODES> values{};  ///< f - iso, NaN where f is undefined
+
+  /** \brief Take up the value of a node. */
+  void
+  setValue (int node, float value, bool is_near)
+  {
+    const std::uint64_t bit = std::uint64_t (1) << node;
+    values[static_cast<std::size_t> (node)] = value;
+    inside |= value < 0.0f ? bit : 0;
+    undefined |= value == value ? 0 : bit;
+    near |= is_near ? bit : 0;
+    known |= bit;
+  }
 };
 
 /** \brief Where a node lies: block and place in it. */
@@ -86,6 +111,18 @@ public:
   GridPlace
   find (const GridPoint &point) const;
 
+  /** \brief The place of the node or cell a step of 0 or 1 along each axis from a place (bits of \a step). */
+  GridPlace
+  step (const GridPlace &from, int step) const;
+
+  /** \brief The block next to a block in the direction of the axes' bits, which is made where it does not exist. */
+  int
+  placeAbove (int block, int axes);
+
+  /** \brief The same against one axis. */
+  int
+  placeBelow (int block, int axis);
+
   GridBlock &
   block (int index)
   {
@@ -120,11 +157,17 @@ public:
 
   /** \brief Values at the 8 corners of a cell whose corners are known. */
   std::array<double, 8>
-  cornerValues (const GridPoint &cell) const;
+  cornerValues (const GridPoint &cell) const
+  {
+    return cornerValues (find (cell));
+  }
 
-  /** \brief Whether a corner of a cell is in reach of the data. */
-  bool
-  isNear (const GridPoint &cell) const;
+  std::array<double, 8>
+  cornerValues (const GridPlace &cell) const;
+
+  /** \brief Mark the edges of active cells on which the values change their sign: they carry the vertices. */
+  void
+  markCutEdges ();
 
   /** \brief Number the cut edges, block after block; returns how many there are. */
   int
@@ -138,10 +181,21 @@ public:
     return vertexOnEdge (block (place.block), place.local, axis);
   }
 
+  /** \brief The same on the edge along \a axis that starts at a corner of a cell. */
+  int
+  vertexOnEdge (const GridPlace &cell, int corner, int axis) const
+  {
+    const GridPlace node = step (cell, corner);
+    return vertexOnEdge (block (node.block), node.local, axis);
+  }
+
   static int
   vertexOnEdge (const GridBlock &block, int node, int axis);
 
 private:
+  int
+  placeBlock (const GridPoint &first);
+
   static std::uint64_t
   keyOf (const GridPoint &point);
 
@@ -170,12 +224,5 @@ struct BlockPart
  */
 const std::vector<BlockPart> &
 partsOfBlock (double support);
-
-/** \brief Corner 0..7 of a cell: bit 0 is x, bit 1 is y, bit 2 is z. */
-inline GridPoint
-cornerOffset (int corner)
-{
-  return {corner & 1, (corner >> 1) & 1, corner >> 2};
-}
 
 } // namespace erkpa

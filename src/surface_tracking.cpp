@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "surface_tracking.h"
 
+#include "grid_bits.h"
 #include "threads.h"
 
 #include <algorithm>
@@ -15,18 +16,92 @@ namespace
 {
 
 constexpr std::size_t MAX_ACTIVE_CELLS = 100000000; // some 100 GB of grid and mesh
-constexpr GridPoint ALONG[3] = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
-constexpr GridPoint AGAINST[3] = {{-1, 0, 0}, {0, -1, 0}, {0, 0, -1}};
+
+/** \brief Evaluates the needed nodes of blocks. */
+class BlockEvaluator
+{
+public:
+  BlockEvaluator (const ImplicitField &field, const PolygonizerOptions &options, const SparseGrid &grid)
+      : options_ (options), grid_ (grid), parts_ (partsOfBlock (field.typicalRadius () / grid.voxelSize ()))
+  {
+  }
+
+  void
+  evaluate (GridField &worker, GridBlock &block) const
+  {
+    for (const BlockPart &part : parts_)
+    {
+      std::uint64_t nodes = block.needed & part.nodes;
+      if (nodes == 0)
+        continue;
+      const double half = 0.5 * (part.side - 1) * grid_.voxelSize (), extent = std::sqrt (3.0) * half;
+      const Eigen::Vector3d center = grid_.position (block.first + part.first).array () + half;
+      if (worker.block.gather (center, extent))
+        nodes = evaluateTogether (worker.block, nodes, block);
+      if (nodes == 0)
+        continue;
+      worker.local.gather (center, extent);
+      for (; nodes != 0; nodes &= nodes - 1)
+        evaluateAlone (worker.local, __builtin_ctzll (nodes), block);
+    }
+    block.needed = 0;
+  }
+
+private:
+  Eigen::Vector3d
+  positionOf (const GridBlock &block, int node) const
+  {
+    return grid_.position (SparseGrid::pointAt (block, node));
+  }
+
+  /** \brief Evaluates what is far from sharp surfaces; returns the nodes that want LocalField. */
+  std::uint64_t
+  evaluateTogether (BlockField &field, std::uint64_t nodes, GridBlock &block) const
+  {
+    std::array<int, GridBlock::NODES> taken;
+    std::uint64_t others = 0;
+    for (; nodes != 0; nodes &= nodes - 1)
+    {
+      const int node = __builtin_ctzll (nodes);
+      const Eigen::Vector3d position = positionOf (block, node);
+      if (field.isPlainAt (position))
+      {
+        taken[field.size ()] = node;
+        field.addPoint (position);
+      }
+      else
+        others |= std::uint64_t (1) << node;
+    }
+    field.evaluate (false);
+    for (std::size_t i = 0; i < field.size (); ++i)
+      if (field.isUnsettled (i))
+        others |= std::uint64_t (1) << taken[i];
+      else
+        block.setValue (taken[i], static_cast<float> (field.value (i) - options_.iso_level), field.isInReach (i));
+    return others;
+  }
+
+  void
+  evaluateAlone (LocalField &field, int node, GridBlock &block) const
+  {
+    const double value = field.value (positionOf (block, node)) - options_.iso_level;
+    block.setValue (node, static_cast<float> (value), isInReach (field, options_, grid_.voxelSize ()));
+  }
+
+  const PolygonizerOptions &options_;
+  const SparseGrid &grid_;
+  const std::vector<BlockPart> &parts_;
+};
 
 } // namespace
 
-LocalField
-fieldForGrid (const ImplicitField &field, double voxel_size)
+GridField::GridField (const ImplicitField &field, const PolygonizerOptions &options, double voxel_size)
+    : local (field), block (field)
 {
   constexpr double LEAST_WALL = 1.2; // voxels
-  LocalField local (field);
   local.thicken (local.unwarpedLength (LEAST_WALL * voxel_size));
-  return local;
+  const double offset = std::abs (options.iso_level);
+  block.setReach (options.reach, offset, std::sqrt (3.0) * voxel_size + offset);
 }
 
 bool
@@ -52,9 +127,10 @@ SurfaceTracker::track ()
   followFront ();
   seedFromProjections ();
   followFront ();
-  if (too_many_)
+  if (active_count_ > MAX_ACTIVE_CELLS)
     return {Status::GRID_TOO_FINE, "the surface crosses more than " + std::to_string (MAX_ACTIVE_CELLS) +
                                        " grid cells: use a larger voxel size or a lower resolution"};
+  listActiveCells ();
   return {};
 }
 
@@ -65,62 +141,75 @@ SurfaceTracker::addToFront (const GridPoint &cell)
   if (!inside (cell.x) || !inside (cell.y) || !inside (cell.z))
     return;
   const GridPlace place = grid_.place (cell);
-  GridBlock &block = grid_.block (place.block);
-  if (block.visited & place.bit ())
+  addToFront (place.block, place.bit ());
+}
+
+void
+SurfaceTracker::addToFront (int index, std::uint64_t cells)
+{
+  GridBlock &block = grid_.block (index);
+  cells &= ~block.visited;
+  if (cells == 0)
     return;
-  block.visited |= place.bit ();
-  next_front_.push_back (cell);
+  if (block.next == 0)
+    next_front_.push_back (index);
+  block.visited |= cells;
+  block.next |= cells;
 }
 
 void
 SurfaceTracker::followFront ()
 {
-  std::swap (front_, next_front_);
-  next_front_.clear ();
-  while (!front_.empty () && !too_many_)
+  while (!next_front_.empty () && active_count_ <= MAX_ACTIVE_CELLS)
   {
-    for (const GridPoint &cell : front_)
-      requestCorners (cell);
-    evaluateRequested ();
-    for (const GridPoint &cell : front_)
-      classify (cell);
     std::swap (front_, next_front_);
     next_front_.clear ();
-    too_many_ = active_.size () > MAX_ACTIVE_CELLS;
+    for (const int block : front_)
+    {
+      grid_.block (block).fresh = std::exchange (grid_.block (block).next, 0);
+      requestCorners (block);
+    }
+    evaluateRequested ();
+    for (const int block : front_)
+      classify (block);
   }
 }
 
 void
-SurfaceTracker::requestCorners (const GridPoint &cell)
+SurfaceTracker::requestCorners (int block)
 {
-  for (int corner = 0; corner < 8; ++corner)
-  {
-    const GridPlace place = grid_.place (cell + cornerOffset (corner));
-    GridBlock &block = grid_.block (place.block);
-    if ((block.known | block.needed) & place.bit ())
-      continue;
-    if (block.needed == 0)
-      requested_blocks_.push_back (place.block);
-    block.needed |= place.bit ();
-  }
+  const std::array<std::uint64_t, 8> corners = grid_bits::cornersOf (grid_.block (block).fresh);
+  for (int above = 0; above < 8; ++above)
+    if (corners[static_cast<std::size_t> (above)] != 0)
+      request (grid_.placeAbove (block, above), corners[static_cast<std::size_t> (above)]);
+}
+
+void
+SurfaceTracker::request (int index, std::uint64_t nodes)
+{
+  GridBlock &block = grid_.block (index);
+  nodes &= ~(block.known | block.needed);
+  if (nodes == 0)
+    return;
+  if (block.needed == 0)
+    requested_blocks_.push_back (index);
+  block.needed |= nodes;
 }
 
 void
 SurfaceTracker::evaluateRequested ()
 {
+  const BlockEvaluator evaluator (field_, options_, grid_);
   // In slices, so that progress shows during the first front, which is the largest by far.
   constexpr std::size_t SLICE = 8192;
   for (std::size_t first = 0; first < requested_blocks_.size (); first += SLICE)
   {
     parallelFor (
         std::min (SLICE, requested_blocks_.size () - first), options_.threads,
-        [this] { return fieldForGrid (field_, grid_.voxelSize ()); },
-        [&] (LocalField &local, std::size_t i) { evaluateBlock (local, grid_.block (requested_blocks_[first + i])); },
-        [this] (const LocalField &local)
-        {
-          report_.evaluations += local.evaluations ();
-          report_.support_nodes += local.supportNodes ();
-        });
+        [this] { return GridField (field_, options_, grid_.voxelSize ()); },
+        [&] (GridField &worker, std::size_t i)
+        { evaluator.evaluate (worker, grid_.block (requested_blocks_[first + i])); },
+        [this] (const GridField &worker) { worker.addTo (report_); });
     evaluated_blocks_ += std::min (SLICE, requested_blocks_.size () - first);
     if (progress_)
       progress_ (std::min (1.0, static_cast<double> (evaluated_blocks_) / static_cast<double> (grid_.blockCount ())));
@@ -128,62 +217,89 @@ SurfaceTracker::evaluateRequested ()
   requested_blocks_.clear ();
 }
 
+/** \brief Marks those fresh cells of a block that the surface crosses, and hands the front on from them. */
 void
-SurfaceTracker::evaluateBlock (LocalField &local, GridBlock &block) const
+SurfaceTracker::classify (int index)
 {
-  for (const BlockPart &part : partsOfBlock (field_.typicalRadius () / grid_.voxelSize ()))
-  {
-    const std::uint64_t nodes = block.needed & part.nodes;
-    if (nodes == 0)
-      continue;
-    const double half = 0.5 * (part.side - 1) * grid_.voxelSize ();
-    local.gather (grid_.position (block.first + part.first).array () + half, std::sqrt (3.0) * half);
-    for (int node = 0; node < GridBlock::NODES; ++node)
+  std::array<std::uint64_t, 8> inside{}, undefined{}, near{};
+  GridBlock &block = grid_.block (index);
+  for (std::size_t above = 0; above < 8; ++above)
+    if (block.above[above] >= 0)
     {
-      if (!(nodes >> node & 1))
-        continue;
-      block.values[static_cast<std::size_t> (node)] =
-          local.value (grid_.position (SparseGrid::pointAt (block, node))) - options_.iso_level;
-      if (isInReach (local, options_, grid_.voxelSize ()))
-        block.near |= std::uint64_t (1) << node;
+      const GridBlock &other = grid_.block (block.above[above]);
+      inside[above] = other.inside;
+      undefined[above] = other.undefined;
+      near[above] = other.near;
     }
-  }
-  block.known |= block.needed;
-  block.needed = 0;
+  const auto any_of = [] (const std::array<std::uint64_t, 8> &corners)
+  {
+    std::uint64_t any = 0;
+    for (const std::uint64_t corner : corners)
+      any |= corner;
+    return any;
+  };
+  inside = grid_bits::atCorners (inside);
+  std::uint64_t crossed =
+      any_of (inside) & any_of (grid_bits::atCorners (near)) & ~any_of (grid_bits::atCorners (undefined)) & block.fresh;
+  std::uint64_t all = ~std::uint64_t (0);
+  for (const std::uint64_t corner : inside)
+    all &= corner;
+  crossed &= ~all;
+  block.active |= crossed;
+  active_count_ += static_cast<std::size_t> (__builtin_popcountll (crossed));
+  for (int axis = 0; axis < 3; ++axis)
+    for (const int side : {0, 1})
+    {
+      std::uint64_t any = 0, every = ~std::uint64_t (0); // of the face's corners
+      for (int corner = 0; corner < 8; ++corner)
+        if ((corner >> axis & 1) == side)
+        {
+          any |= inside[static_cast<std::size_t> (corner)];
+          every &= inside[static_cast<std::size_t> (corner)];
+        }
+      handOn (index, crossed & any & ~every, axis, side == 1);
+    }
+}
+
+/** \brief The cells beyond a face of some cells go into the next front. */
+void
+SurfaceTracker::handOn (int index, std::uint64_t cells, int axis, bool up)
+{
+  if (cells == 0)
+    return;
+  addToFront (index, up ? grid_bits::up (cells, axis) : grid_bits::down (cells, axis));
+  const std::uint64_t leaving = up ? grid_bits::intoAbove (cells, axis) : grid_bits::intoBelow (cells, axis);
+  const GridPoint &first = grid_.block (index).first;
+  const int coordinate = (axis == 0 ? first.x : axis == 1 ? first.y : first.z) + (up ? 4 : -4);
+  if (leaving != 0 && std::abs (coordinate) + 4 < SparseGrid::LIMIT)
+    addToFront (up ? grid_.placeAbove (index, 1 << axis) : grid_.placeBelow (index, axis), leaving);
 }
 
 void
-SurfaceTracker::classify (const GridPoint &cell)
+SurfaceTracker::listActiveCells ()
 {
-  const std::array<double, 8> values = grid_.cornerValues (cell);
-  unsigned inside = 0;
-  for (unsigned corner = 0; corner < 8; ++corner)
+  active_.reserve (active_count_);
+  for (int index = 0; index < grid_.blockCount (); ++index)
   {
-    if (std::isnan (values[corner]))
-      return;
-    inside |= values[corner] < 0.0 ? 1u << corner : 0u;
-  }
-  if (inside == 0 || inside == 255 || !grid_.isNear (cell))
-    return;
-  const GridPlace place = grid_.place (cell);
-  grid_.block (place.block).active |= place.bit ();
-  active_.push_back (cell);
-  constexpr unsigned LOW_FACES[3] = {0x55, 0x33, 0x0f}; // the corners of a face as bits
-  for (int axis = 0; axis < 3; ++axis)
-  {
-    const unsigned low = inside & LOW_FACES[axis], high = inside & ~LOW_FACES[axis];
-    if (low != 0 && low != LOW_FACES[axis])
-      addToFront (cell + AGAINST[axis]);
-    if (high != 0 && high != (255u ^ LOW_FACES[axis]))
-      addToFront (cell + ALONG[axis]);
+    const GridBlock &block = grid_.block (index);
+    for (std::uint64_t left = block.active; left != 0; left &= left - 1)
+      active_.push_back (SparseGrid::pointAt (block, __builtin_ctzll (left)));
   }
 }
 
 void
 SurfaceTracker::seedFromNodes ()
 {
-  for (const Eigen::Vector3f &position : field_.surfacePositions ())
-    addToFront (grid_.cellOf (position.cast<double> ()));
+  if (field_.options ().warp)
+  {
+    for (const Eigen::Vector3f &position : field_.surfacePositions ())
+      addToFront (grid_.cellOf (position.cast<double> ()));
+    return;
+  }
+  // In the order of the grid neighbours follow each other, and so do their blocks in memory.
+  const PointGrid &nodes = *field_.nodeTable ().grid;
+  for (std::size_t i = 0; i < nodes.size (); ++i)
+    addToFront (grid_.cellOf ({nodes.coordinates (0)[i], nodes.coordinates (1)[i], nodes.coordinates (2)[i]}));
 }
 
 bool
@@ -218,17 +334,13 @@ SurfaceTracker::seedFromProjections ()
   std::vector<Eigen::Vector3d> feet (away.size ());
   std::vector<char> has_foot (away.size (), 0);
   parallelFor (
-      away.size (), options_.threads, [this] { return fieldForGrid (field_, grid_.voxelSize ()); },
-      [&] (LocalField &local, std::size_t i)
+      away.size (), options_.threads, [this] { return GridField (field_, options_, grid_.voxelSize ()); },
+      [&] (GridField &worker, std::size_t i)
       {
         feet[i] = positions[away[i]].cast<double> ();
-        has_foot[i] = project (local, feet[i]) ? 1 : 0;
+        has_foot[i] = project (worker.local, feet[i]) ? 1 : 0;
       },
-      [this] (const LocalField &local)
-      {
-        report_.evaluations += local.evaluations ();
-        report_.support_nodes += local.supportNodes ();
-      });
+      [this] (const GridField &worker) { worker.addTo (report_); });
   for (std::size_t i = 0; i < away.size (); ++i)
     if (has_foot[i])
     {

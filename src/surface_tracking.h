@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include "block_field.h"
 #include "local_field.h"
 #include "sparse_grid.h"
 
@@ -15,7 +16,8 @@ namespace erkpa
 /** \brief Finds the cells that the surface crosses by following it from the cells of the nodes.
  *
  * Works in fronts: the corner values a front needs are evaluated together, block by block, each once; then every
- * crossed cell hands the front on through the faces that the surface passes.
+ * crossed cell hands the front on through the faces that the surface passes. Which cells are crossed does not depend
+ * on the order, so that a front is a set of blocks, and the cells of a block are looked at together, as bits.
  */
 class SurfaceTracker
 {
@@ -29,7 +31,7 @@ public:
   Outcome
   track ();
 
-  /** \brief The active cells, in the order they were found. */
+  /** \brief The active cells, block after block. */
   const std::vector<GridPoint> &
   activeCells () const
   {
@@ -50,19 +52,28 @@ private:
   addToFront (const GridPoint &cell);
 
   void
+  addToFront (int block, std::uint64_t cells);
+
+  void
   followFront ();
 
   void
-  requestCorners (const GridPoint &cell);
+  requestCorners (int block);
+
+  void
+  request (int block, std::uint64_t nodes);
 
   void
   evaluateRequested ();
 
   void
-  evaluateBlock (LocalField &local, GridBlock &block) const;
+  classify (int block);
 
   void
-  classify (const GridPoint &cell);
+  handOn (int block, std::uint64_t cells, int axis, bool up);
+
+  void
+  listActiveCells ();
 
   void
   seedFromNodes ();
@@ -81,16 +92,29 @@ private:
   SparseGrid &grid_;
   PolygonizerReport &report_;
   ProgressCallback progress_;
-  std::vector<GridPoint> front_, next_front_, active_;
+  std::vector<int> front_, next_front_; // blocks with fresh cells
+  std::vector<GridPoint> active_;
+  std::size_t active_count_ = 0;
   std::vector<int> requested_blocks_;
   std::size_t evaluated_blocks_ = 0; // a block counts once per front that asks for nodes of it
   std::vector<GridPoint> cells_of_nodes_;
-  bool too_many_ = false;
 };
 
-/** \brief The field for a grid: walls so thin that both sides cross the same edge of the grid are thickened. */
-LocalField
-fieldForGrid (const ImplicitField &field, double voxel_size);
+/** \brief The field as one thread asks it for the nodes of a grid. */
+struct GridField
+{
+  GridField (const ImplicitField &field, const PolygonizerOptions &options, double voxel_size);
+
+  LocalField local; ///< walls so thin that both sides cross the same edge of the grid are thickened
+  BlockField block; ///< where no sharp surface is in reach
+
+  void
+  addTo (PolygonizerReport &report) const
+  {
+    report.evaluations += local.evaluations () + block.evaluations ();
+    report.support_nodes += local.supportNodes () + block.supportNodes ();
+  }
+};
 
 /** \brief Whether a surface may be at a point: not farther from the nodes than the data supports. */
 bool

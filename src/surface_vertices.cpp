@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 namespace erkpa
 {
@@ -18,46 +19,33 @@ constexpr double TOLERANCE = 1e-4; // of a voxel, along the edge
 constexpr double MARGIN = 1e-3;    // of a voxel: a vertex keeps this far from the grid nodes, or triangles degenerate
 constexpr int MAX_STEPS = 12;
 
-/** \brief Finds the root of f - iso on grid edges. */
-class EdgeRoots
+/** \brief An edge of the grid on which f - iso changes its sign, and what is known of the root on it. */
+struct EdgeRoot
 {
-public:
-  EdgeRoots (const SparseGrid &grid, const PolygonizerOptions &options) : grid_ (grid), options_ (options) {}
+  int node, axis;
+  bool low_inside;
+  double t; ///< where it is sought next, as a share of the edge
+  double t_low = 0.0, t_high = 1.0;
 
-  /** \brief The root between two nodes with values of different sign; \a sample is taken there. */
-  Eigen::Vector3d
-  find (LocalField &local, const GridPoint &node, int axis, double low, double high, LocalSample &sample) const
+  EdgeRoot (int from, int along, double low, double high)
+      : node (from), axis (along), low_inside (low < 0.0), t (std::clamp (low / (low - high), MARGIN, 1.0 - MARGIN))
   {
-    const Eigen::Vector3d start = grid_.position (node);
-    const double length = grid_.voxelSize ();
-    double t = std::clamp (low / (low - high), MARGIN, 1.0 - MARGIN);
-    double t_low = 0.0, t_high = 1.0;
-    Eigen::Vector3d position;
-    for (int step = 0;; ++step)
-    {
-      position = start;
-      position[axis] += t * length;
-      sample = local.sample (position);
-      const double value = sample.value - options_.iso_level;
-      if (step == MAX_STEPS || !sample.isDefined ())
-        break;
-      const double slope = sample.gradient[axis] * length;
-      if (std::abs (value) <= TOLERANCE * std::abs (slope) || t_high - t_low < TOLERANCE)
-        break;
-      ((value < 0.0) == (low < 0.0) ? t_low : t_high) = t;
-      const double newton = t - value / slope;
-      const double next = newton > t_low && newton < t_high ? newton : 0.5 * (t_low + t_high);
-      const double clamped = std::clamp (next, MARGIN, 1.0 - MARGIN);
-      if (clamped == t)
-        break;
-      t = clamped;
-    }
-    return position;
   }
 
-private:
-  const SparseGrid &grid_;
-  const PolygonizerOptions &options_;
+  /** \brief Take up f - iso and its slope along the edge at t.
+   * \return how far the root is moved; 0 where it is found
+   */
+  double
+  refine (double value, double slope)
+  {
+    if (std::abs (value) <= TOLERANCE * std::abs (slope) || t_high - t_low < TOLERANCE)
+      return 0.0;
+    ((value < 0.0) == low_inside ? t_low : t_high) = t;
+    const double newton = t - value / slope;
+    const double next = newton > t_low && newton < t_high ? newton : 0.5 * (t_low + t_high);
+    const double before = std::exchange (t, std::clamp (next, MARGIN, 1.0 - MARGIN));
+    return std::abs (t - before);
+  }
 };
 
 void
@@ -103,6 +91,150 @@ moveToFace (LocalField &local, const PolygonizerOptions &options, double voxel, 
     vertices.normals[vertex] = piece.gradient.normalized ();
 }
 
+/** \brief Puts the vertices on the cut edges of blocks. */
+class VertexPlacer
+{
+public:
+  VertexPlacer (const ImplicitField &field, const PolygonizerOptions &options, const SparseGrid &grid,
+                SurfaceVertices &vertices)
+      : options_ (options), grid_ (grid), vertices_ (vertices), channels_ (field.points ().channels),
+        parts_ (partsOfBlock (field.typicalRadius () / grid.voxelSize ()))
+  {
+  }
+
+  void
+  placeInBlock (GridField &worker, const GridBlock &block) const
+  {
+    std::vector<EdgeRoot> roots;
+    for (const BlockPart &part : parts_)
+    {
+      roots.clear ();
+      listRoots (block, part.nodes, roots);
+      if (roots.empty ())
+        continue;
+      const double half = 0.5 * part.side * grid_.voxelSize (), extent = std::sqrt (3.0) * half;
+      const Eigen::Vector3d center = grid_.position (block.first + part.first).array () + half;
+      if (worker.block.gather (center, extent))
+        placeTogether (worker.block, block, roots);
+      if (roots.empty ())
+        continue;
+      worker.local.gather (center, extent);
+      for (EdgeRoot &root : roots)
+        placeAlone (worker.local, block, root);
+    }
+  }
+
+private:
+  void
+  listRoots (const GridBlock &block, std::uint64_t nodes, std::vector<EdgeRoot> &roots) const
+  {
+    for (int axis = 0; axis < 3; ++axis)
+      for (std::uint64_t left = block.cut[static_cast<std::size_t> (axis)] & nodes; left != 0; left &= left - 1)
+      {
+        const int node = __builtin_ctzll (left);
+        const GridPlace high = grid_.step ({block.above[0], node}, 1 << axis);
+        roots.emplace_back (node, axis, block.values[static_cast<std::size_t> (node)],
+                            grid_.block (high.block).values[static_cast<std::size_t> (high.local)]);
+      }
+  }
+
+  Eigen::Vector3d
+  positionOf (const GridBlock &block, const EdgeRoot &root) const
+  {
+    Eigen::Vector3d position = grid_.position (SparseGrid::pointAt (block, root.node));
+    position[root.axis] += root.t * grid_.voxelSize ();
+    return position;
+  }
+
+  static std::size_t
+  vertexOf (const GridBlock &block, const EdgeRoot &root)
+  {
+    return static_cast<std::size_t> (SparseGrid::vertexOnEdge (block, root.node, root.axis));
+  }
+
+  /** \brief All roots of a block by Newton steps from the linear guess, each step for all of them at once.
+   *
+   * A last short step is taken without a look at where it leads: what it leaves is of second order.
+   * \param[in,out] roots those that want LocalField are left
+   */
+  void
+  placeTogether (BlockField &field, const GridBlock &block, std::vector<EdgeRoot> &roots) const
+  {
+    constexpr int ROUNDS = 5;
+    constexpr double SHORT = 0.03;
+    std::vector<EdgeRoot> alone;
+    for (int round = 0; round < ROUNDS && !roots.empty (); ++round)
+    {
+      field.clearPoints ();
+      std::size_t taken = 0;
+      for (const EdgeRoot root : roots)
+      {
+        const Eigen::Vector3d position = positionOf (block, root);
+        if (!field.isPlainAt (position))
+        {
+          alone.push_back (root);
+          continue;
+        }
+        roots[taken++] = root;
+        field.addPoint (position);
+      }
+      field.evaluate (true);
+      std::size_t left = 0;
+      for (std::size_t i = 0; i < taken; ++i)
+      {
+        EdgeRoot root = roots[i];
+        const double slope = field.gradient (i)[root.axis] * grid_.voxelSize ();
+        if (!field.isSettled (i))
+          alone.push_back (root);
+        else if (root.refine (field.value (i) - options_.iso_level, slope) > SHORT)
+          roots[left++] = root;
+        else
+          store (field, i, positionOf (block, root), vertexOf (block, root));
+      }
+      roots.erase (roots.begin () + static_cast<std::ptrdiff_t> (left), roots.end ());
+    }
+    roots.insert (roots.end (), alone.begin (), alone.end ());
+  }
+
+  void
+  store (const BlockField &field, std::size_t point, const Eigen::Vector3d &position, std::size_t vertex) const
+  {
+    vertices_.positions[vertex] = position;
+    vertices_.normals[vertex] = field.gradient (point).stableNormalized ();
+    vertices_.border_offsets[vertex] = field.borderOffset (point);
+    vertices_.faces[vertex] = field.face (point);
+    vertices_.side_keys[vertex] = sideKeyOf (vertices_.faces[vertex]);
+    const auto channels = static_cast<std::size_t> (channels_);
+    for (std::size_t c = 0; c < channels; ++c)
+      vertices_.attributes[vertex * channels + c] = field.attribute (point, c);
+  }
+
+  void
+  placeAlone (LocalField &local, const GridBlock &block, EdgeRoot &root) const
+  {
+    LocalSample sample;
+    Eigen::Vector3d position;
+    for (int step = 0;; ++step)
+    {
+      position = positionOf (block, root);
+      sample = local.sample (position);
+      if (step == MAX_STEPS || !sample.isDefined () ||
+          root.refine (sample.value - options_.iso_level, sample.gradient[root.axis] * grid_.voxelSize ()) == 0.0)
+        break;
+    }
+    const std::size_t vertex = vertexOf (block, root);
+    storeVertex (local, sample, position, vertex, channels_, vertices_);
+    if (local.thickening () != 0.0)
+      moveToFace (local, options_, grid_.voxelSize (), vertex, vertices_);
+  }
+
+  const PolygonizerOptions &options_;
+  const SparseGrid &grid_;
+  SurfaceVertices &vertices_;
+  int channels_;
+  const std::vector<BlockPart> &parts_;
+};
+
 } // namespace
 
 void
@@ -111,47 +243,17 @@ placeVertices (const ImplicitField &field, const PolygonizerOptions &options, Sp
 {
   const int channels = field.points ().channels;
   vertices.resize (static_cast<std::size_t> (grid.numberVertices ()), channels);
-  const EdgeRoots roots (grid, options);
-  const auto place_on_edge = [&] (LocalField &local, const GridBlock &block, int node, int axis)
-  {
-    const GridPoint low = SparseGrid::pointAt (block, node);
-    const GridPlace high = grid.find ({low.x + (axis == 0), low.y + (axis == 1), low.z + (axis == 2)});
-    LocalSample sample;
-    const Eigen::Vector3d position =
-        roots.find (local, low, axis, block.values[static_cast<std::size_t> (node)],
-                    grid.block (high.block).values[static_cast<std::size_t> (high.local)], sample);
-    const auto vertex = static_cast<std::size_t> (SparseGrid::vertexOnEdge (block, node, axis));
-    storeVertex (local, sample, position, vertex, channels, vertices);
-    if (local.thickening () != 0.0)
-      moveToFace (local, options, grid.voxelSize (), vertex, vertices);
-  };
-  const auto place_in_block = [&] (LocalField &local, std::size_t index)
-  {
-    const GridBlock &block = grid.block (static_cast<int> (index));
-    for (const BlockPart &part : partsOfBlock (field.typicalRadius () / grid.voxelSize ()))
-    {
-      if (((block.cut[0] | block.cut[1] | block.cut[2]) & part.nodes) == 0)
-        continue;
-      const double half = 0.5 * part.side * grid.voxelSize ();
-      local.gather (grid.position (block.first + part.first).array () + half, std::sqrt (3.0) * half);
-      for (int axis = 0; axis < 3; ++axis)
-        for (int node = 0; node < GridBlock::NODES; ++node)
-          if (block.cut[static_cast<std::size_t> (axis)] & part.nodes & std::uint64_t (1) << node)
-            place_on_edge (local, block, node, axis);
-    }
-  };
+  const VertexPlacer placer (field, options, grid, vertices);
   const auto blocks = static_cast<std::size_t> (grid.blockCount ());
   constexpr std::size_t SLICE = 8192;
   for (std::size_t first = 0; first < blocks; first += SLICE)
   {
     parallelFor (
-        std::min (SLICE, blocks - first), options.threads, [&] { return fieldForGrid (field, grid.voxelSize ()); },
-        [&] (LocalField &local, std::size_t i) { place_in_block (local, first + i); },
-        [&report] (const LocalField &local)
-        {
-          report.evaluations += local.evaluations ();
-          report.support_nodes += local.supportNodes ();
-        });
+        std::min (SLICE, blocks - first), options.threads,
+        [&] { return GridField (field, options, grid.voxelSize ()); },
+        [&] (GridField &worker, std::size_t i)
+        { placer.placeInBlock (worker, grid.block (static_cast<int> (first + i))); },
+        [&report] (const GridField &worker) { worker.addTo (report); });
     if (progress)
       progress (static_cast<double> (std::min (blocks, first + SLICE)) / static_cast<double> (blocks));
   }

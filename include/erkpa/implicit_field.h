@@ -18,6 +18,7 @@ namespace erkpa
 {
 
 class FaceMap;
+struct NodeTable;
 struct Pencil;
 class SupportSize;
 
@@ -258,6 +259,20 @@ public:
     return enriching_places_[static_cast<std::size_t> (surface)];
   }
 
+  /** \brief Whether the nodes have values beside those of the constraint: setNodeValues (). */
+  bool
+  hasNodeValues () const
+  {
+    return !values_.empty ();
+  }
+
+  /** \brief The nodes sorted in space, for evaluations of whole blocks. */
+  const NodeTable &
+  nodeTable () const
+  {
+    return *node_table_;
+  }
+
   /** \brief The faces that found sharp surfaces keep apart; null where there are none. */
   const FaceMap *
   faces () const
@@ -297,6 +312,7 @@ private:
   std::vector<SharpSurface::ConstPtr> enriching_;
   std::vector<int> enriching_places_;
   std::shared_ptr<const FaceMap> faces_;
+  std::shared_ptr<const NodeTable> node_table_;
   double typical_radius_ = 0.0;
   double spacing_ = 0.0;
   double feature_size_ = 0.0;

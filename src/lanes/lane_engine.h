@@ -1,0 +1,147 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "lane_fit.h"
+
+namespace erkpa::lanes
+{
+
+template <typename B, Basis BASIS, Constraint CONSTRAINT, template <typename> class KernelT>
+class LaneEngine
+{
+public:
+  LaneEngine (const Settings &settings, const Nodes &nodes, const Points &points, const Scratch &scratch,
+              const Samples &samples)
+      : settings_ (settings), nodes_ (nodes), points_ (points), scratch_ (scratch), samples_ (samples)
+  {
+  }
+
+  void
+  evaluate () const
+  {
+    for (std::size_t first = 0; first < points_.count; first += B::size)
+    {
+      const LaneSupport<B> support (settings_, nodes_, points_, first, scratch_);
+      Fit fit (settings_, nodes_, support);
+      const B nan (__builtin_nanf (""));
+      B value = xsimd::select (fit.isDefined (), fit.value (), nan);
+      support.radius ().store_unaligned (samples_.radius + first);
+      value.store_unaligned (samples_.value + first);
+      const B one (1.0f), zero (0.0f);
+      const B near = xsimd::select (fit.isInReach (), one, zero);
+      B state = xsimd::select (fit.isDefined (), zero, one);
+      if (settings_.gradients)
+        storeGradients (support, fit, first, state);
+      storeBytes (near, state, fit, first);
+    }
+  }
+
+private:
+  using Fit = LaneFit<B, BASIS, CONSTRAINT, KernelT>;
+
+  void
+  storeGradients (const LaneSupport<B> &support, Fit &fit, std::size_t first, B &state) const
+  {
+    B growth[3] = {B (0.0f), B (0.0f), B (0.0f)}, gradient[3];
+    if (settings_.k > 0)
+      support.radiusGradient (growth);
+    else if (points_.growth[0] != nullptr)
+      for (int a = 0; a < 3; ++a)
+        growth[a] = B::load_unaligned (points_.growth[a] + first);
+    fit.gradient (growth, gradient);
+    for (int a = 0; a < 3; ++a)
+      gradient[a].store_unaligned (samples_.gradient[a] + first);
+    fit.borderOffset (gradient).store_unaligned (samples_.border_offset + first);
+    for (std::size_t c = 0; c < nodes_.channels; ++c)
+      fit.blend (nodes_.attributes + c * nodes_.count)
+          .store_unaligned (samples_.attributes + c * points_.attributes_stride + first);
+    state = xsimd::select (fit.isUnsettled () && state < B (0.5f), B (2.0f), state);
+  }
+
+  void
+  storeBytes (B near, B state, const Fit &fit, std::size_t first) const
+  {
+    float nears[B::size], states[B::size], nearest[B::size], support[B::size];
+    near.store_unaligned (nears);
+    state.store_unaligned (states);
+    fit.nearestNode ().store_unaligned (nearest);
+    fit.supportNodes ().store_unaligned (support);
+    for (std::size_t i = 0; i < B::size; ++i)
+    {
+      samples_.in_reach[first + i] = nears[i] > 0.5f ? 1 : 0;
+      samples_.state[first + i] = static_cast<State> (static_cast<int> (states[i]));
+      samples_.support[first + i] = static_cast<std::uint32_t> (support[i]);
+      if (samples_.nearest != nullptr)
+        samples_.nearest[first + i] = static_cast<std::uint32_t> (nearest[i]);
+    }
+  }
+
+  const Settings &settings_;
+  const Nodes &nodes_;
+  const Points &points_;
+  const Scratch &scratch_;
+  const Samples &samples_;
+};
+
+template <typename B, Basis BASIS, Constraint CONSTRAINT>
+void
+evaluateWith (const Settings &settings, const Nodes &nodes, const Points &points, const Scratch &scratch,
+              const Samples &samples)
+{
+  constexpr bool IS_COMMON = BASIS == Basis::LINEAR || BASIS == Basis::SPHERICAL;
+  if constexpr (IS_COMMON)
+    if (settings.kernel == Kernel::PAPER)
+    {
+      LaneEngine<B, BASIS, CONSTRAINT, PaperKernel> (settings, nodes, points, scratch, samples).evaluate ();
+      return;
+    }
+  LaneEngine<B, BASIS, CONSTRAINT, AnyKernel> (settings, nodes, points, scratch, samples).evaluate ();
+}
+
+template <typename B, Basis BASIS>
+void
+evaluateWith (const Settings &settings, const Nodes &nodes, const Points &points, const Scratch &scratch,
+              const Samples &samples)
+{
+  switch (settings.constraint)
+  {
+    case Constraint::HERMITE:
+      evaluateWith<B, BASIS, Constraint::HERMITE> (settings, nodes, points, scratch, samples);
+      break;
+    case Constraint::VALUES:
+      evaluateWith<B, BASIS, Constraint::VALUES> (settings, nodes, points, scratch, samples);
+      break;
+    case Constraint::FUNCTIONAL:
+      evaluateWith<B, BASIS, Constraint::FUNCTIONAL> (settings, nodes, points, scratch, samples);
+      break;
+  }
+}
+
+/** \brief What an Engine does, in vectors of one instruction set. */
+template <typename ArchT>
+void
+evaluate (const Settings &settings, const Nodes &nodes, const Points &points, const Scratch &scratch,
+          const Samples &samples)
+{
+  using B = xsimd::batch<float, ArchT>;
+  switch (settings.basis)
+  {
+    case Basis::CONSTANT: // has no gradient to fit: FieldFit takes the functional value for the Hermite constraint
+      if (settings.constraint == Constraint::VALUES)
+        evaluateWith<B, Basis::CONSTANT, Constraint::VALUES> (settings, nodes, points, scratch, samples);
+      else
+        evaluateWith<B, Basis::CONSTANT, Constraint::FUNCTIONAL> (settings, nodes, points, scratch, samples);
+      break;
+    case Basis::LINEAR:
+      evaluateWith<B, Basis::LINEAR> (settings, nodes, points, scratch, samples);
+      break;
+    case Basis::SPHERICAL:
+      evaluateWith<B, Basis::SPHERICAL> (settings, nodes, points, scratch, samples);
+      break;
+    case Basis::QUADRATIC:
+      evaluateWith<B, Basis::QUADRATIC> (settings, nodes, points, scratch, samples);
+      break;
+  }
+}
+
+} // namespace erkpa::lanes

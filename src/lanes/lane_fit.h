@@ -1,0 +1,375 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "lane_kernel.h"
+#include "lane_support.h"
+#include "lane_system.h"
+
+namespace erkpa::lanes
+{
+
+/** \brief FieldFit in lanes: the sums over the nodes, the solution, and what it says at the evaluation points.
+ *
+ * Sums are taken in x_i - x, unscaled, and brought to u = (x_i - x) / ε by the degree of their terms afterwards.
+ */
+template <typename B, Basis BASIS, Constraint CONSTRAINT, template <typename> class KernelT>
+class LaneFit
+{
+public:
+  using Mask = decltype (B () < B ());
+
+  LaneFit (const Settings &settings, const Nodes &nodes, const LaneSupport<B> &support)
+      : settings_ (settings), nodes_ (nodes), support_ (support), kernel_ (settings.kernel), scale_ (support.inverse ())
+  {
+    sumMoments ();
+    scaleMoments ();
+    for (int a = 0; a < (SIZE > 1 ? 3 : 0); ++a)
+      centroid_[a] = system_.M[at (1 + a, 0)] / system_.M[0];
+    B spread (0.0f);
+    if constexpr (SIZE > 1)
+      for (int a = 0; a < 3; ++a)
+        spread += xsimd::fnma (centroid_[a], system_.M[at (1 + a, 0)], system_.M[at (1 + a, 1 + a)]);
+    spread_ = spread;
+    weight_ = system_.M[0];
+    if constexpr (CONSTRAINT == Constraint::HERMITE)
+      TermsT::addGradientMoments (system_.M);
+    system_.factorize (CONSTRAINT, spread);
+    for (int j = 0; j < SIZE; ++j)
+      c_[j] = system_.b[j];
+    system_.solve (c_);
+  }
+
+  Mask
+  isDefined () const
+  {
+    return in_support_ >= B (static_cast<float> (settings_.min_nodes)) && weight_ > B (0.0f);
+  }
+
+  /** \brief f(x): R(x) = (1, 0, ...). */
+  B
+  value () const
+  {
+    return support_.radius () * c_[0];
+  }
+
+  /** \brief Number of nodes in the support. */
+  B
+  supportNodes () const
+  {
+    return in_support_;
+  }
+
+  /** \brief Whether the data supports a surface here: see Settings::reach. */
+  Mask
+  isInReach () const
+  {
+    const B quarter = xsimd::floor (on_surface_ * B (0.25f));
+    return in_quarter_ > quarter || nearest_ <= B (settings_.near_enough * settings_.near_enough);
+  }
+
+  B
+  nearestNode () const
+  {
+    return nearest_node_;
+  }
+
+  /** \brief ∇f(x); see FieldFit::gradient (). */
+  void
+  gradient (const B *growth_of_points, B *gradient)
+  {
+    B growth[3]; // 2 ∇ε
+    for (int a = 0; a < 3; ++a)
+      growth[a] = B (2.0f) * growth_of_points[a];
+    for (int j = 0; j < SIZE; ++j)
+      a_[j] = B (j == 0 ? 1.0f : 0.0f);
+    system_.solve (a_);
+    B by_u[3] = {B (0.0f), B (0.0f), B (0.0f)}, by_radius (0.0f), direct[3] = {by_radius, by_radius, by_radius};
+    if constexpr (SIZE == 1)
+      centroid_[0] = centroid_[1] = centroid_[2] = B (0.0f);
+    for (std::size_t i = 0; i < support_.size (); ++i)
+      addResidual (support_.node (i), by_u, by_radius, direct);
+    for (int a = 0; a < 3; ++a)
+    {
+      gradient[a] = xsimd::fma (growth[a], by_radius, direct[a] - by_u[a]);
+      if constexpr (SIZE > 1)
+        gradient[a] += c_[1 + a];
+    }
+    if constexpr (RAISES_MATTER)
+      subtractRaises (growth_of_points, gradient);
+  }
+
+  /** \brief Where the gradient needs more than is computed here, or more digits: ten terms ask for doubles. */
+  Mask
+  isUnsettled () const
+  {
+    Mask unsettled = BASIS == Basis::QUADRATIC ? B (0.0f) < B (1.0f) : B (0.0f) > B (1.0f);
+    for (int j = RAISES_MATTER ? 4 : 1; j < SIZE; ++j)
+      unsettled = unsettled || system_.raise (j) > B (0.0f);
+    if constexpr (RAISES_MATTER && SIZE > 4)
+      for (int j = 1; j < 4; ++j)
+        unsettled = unsettled || system_.raise (j) > B (0.0f);
+    return unsettled;
+  }
+
+  /** \brief |centroid of the weighted nodes - x| across the gradient, in ε. */
+  B
+  borderOffset (const B *gradient) const
+  {
+    const B squared = dot (gradient, gradient);
+    const B along = dot (centroid_, gradient) / squared;
+    B across[3];
+    for (int a = 0; a < 3; ++a)
+      across[a] = xsimd::fnma (along, gradient[a], centroid_[a]);
+    return xsimd::select (squared > B (0.0f), xsimd::sqrt (dot (across, across)), B (3e38f));
+  }
+
+  /** \brief Weighted mean of an attribute. */
+  B
+  blend (const float *attribute) const
+  {
+    B sum (0.0f);
+    for (std::size_t i = 0; i < support_.size (); ++i)
+    {
+      const std::size_t node = support_.node (i);
+      B d[3], t;
+      sum = xsimd::fma (weightOf (node, d, t), B (attribute[node]), sum);
+    }
+    return sum / weight_;
+  }
+
+private:
+  using TermsT = Terms<B, BASIS>;
+  static constexpr int SIZE = TermsT::SIZE;
+  // With other constraints pivots that are raised are a rare thing.
+  static constexpr bool RAISES_MATTER = CONSTRAINT == Constraint::FUNCTIONAL;
+
+  static B
+  dot (const B *a, const B *b)
+  {
+    return xsimd::fma (a[2], b[2], xsimd::fma (a[1], b[1], a[0] * b[0]));
+  }
+
+  void
+  normalOf (std::size_t node, B *n) const
+  {
+    n[0] = B (nodes_.nx[node]);
+    n[1] = B (nodes_.ny[node]);
+    n[2] = B (nodes_.nz[node]);
+  }
+
+  /** \brief w(t) Δx_i; zero beyond the support. */
+  B
+  weightOf (std::size_t node, B *d, B &t) const
+  {
+    const B squared = support_.offset (node, d);
+    t = xsimd::min (xsimd::sqrt (squared) * scale_, B (1.0f));
+    const B weight = kernel_.weight (t);
+    return nodes_.confidence != nullptr ? weight * B (nodes_.confidence[node]) : weight;
+  }
+
+  void
+  sumMoments ()
+  {
+    const B reach = xsimd::fma (support_.radius (), B (settings_.reach), B (settings_.offset)), far (3e38f);
+    const B reach_squared = reach * reach, radius_squared = support_.squaredRadius ();
+    B in_support (0.0f), on_surface (0.0f), in_quarter (0.0f), nearest = far, nearest_node (0.0f);
+    LaneSystem<TermsT, B> sums;
+    const std::size_t count = support_.size ();
+    for (std::size_t i = 0; i < count; ++i)
+    {
+      const std::size_t node = support_.node (i);
+      B d[3];
+      const B squared = support_.offset (node, d);
+      const B t = xsimd::min (xsimd::sqrt (squared) * scale_, B (1.0f));
+      B weight = kernel_.weight (t);
+      if (nodes_.confidence != nullptr)
+        weight *= B (nodes_.confidence[node]);
+      const B one (1.0f), zero (0.0f);
+      const auto inside = squared < radius_squared;
+      in_support += xsimd::select (inside, one, zero);
+      if (node < nodes_.on_surface)
+      {
+        on_surface += xsimd::select (inside, one, zero);
+        in_quarter += xsimd::select (inside && squared <= reach_squared, one, zero);
+        const auto is_nearer = squared < nearest;
+        nearest_node = xsimd::select (is_nearer, B (static_cast<float> (node)), nearest_node);
+        nearest = xsimd::select (is_nearer, squared, nearest);
+      }
+      addNode (node, weight, d, squared, sums);
+    }
+    system_ = sums;
+    in_support_ = in_support;
+    on_surface_ = on_surface;
+    in_quarter_ = in_quarter;
+    nearest_ = nearest;
+    nearest_node_ = nearest_node;
+  }
+
+  void
+  addNode (std::size_t node, B weight, const B *d, B squared, LaneSystem<TermsT, B> &sums) const
+  {
+    B R[SIZE], n[3];
+    TermsT::evaluate (d, squared, R);
+    normalOf (node, n);
+    B weighted[SIZE];
+    weighted[0] = weight;
+    for (int j = 1; j < SIZE; ++j)
+      weighted[j] = weight * R[j];
+    for (int i = 0; i < SIZE; ++i)
+    {
+      sums.M[at (i, 0)] += weighted[i];
+      for (int j = 1; j <= i; ++j)
+        sums.M[at (i, j)] = xsimd::fma (weighted[i], R[j], sums.M[at (i, j)]);
+    }
+    if constexpr (CONSTRAINT == Constraint::HERMITE)
+      TermsT::addNormal (weight, d, n, sums.b);
+    if (CONSTRAINT == Constraint::HERMITE && nodes_.lambda == nullptr)
+      return;
+    B height (nodes_.lambda != nullptr ? nodes_.lambda[node] : 0.0f);
+    if constexpr (CONSTRAINT == Constraint::FUNCTIONAL)
+      height -= dot (d, n); // eq. (2)
+    if constexpr (CONSTRAINT == Constraint::HERMITE)
+      height *= scale_ * scale_; // the others are the products of gradients, a degree of two lower
+    for (int j = 0; j < SIZE; ++j)
+      sums.b[j] = xsimd::fma (weighted[j], height, sums.b[j]);
+  }
+
+  /** \brief From x_i - x to u: a term of degree p goes with ε^-p. */
+  void
+  scaleMoments ()
+  {
+    B power[5] = {B (1.0f), scale_, scale_ * scale_, scale_ * scale_ * scale_, scale_ * scale_ * scale_ * scale_};
+    for (int i = 0; i < SIZE; ++i)
+    {
+      for (int j = 0; j <= i; ++j)
+        if (TermsT::degree (i) + TermsT::degree (j) > 0)
+          system_.M[at (i, j)] *= power[TermsT::degree (i) + TermsT::degree (j)];
+      if constexpr (CONSTRAINT == Constraint::HERMITE)
+        system_.b[i] *= TermsT::degree (i) == 0 ? support_.radius () : power[TermsT::degree (i) - 1];
+      else
+        system_.b[i] *= power[TermsT::degree (i) + 1];
+    }
+  }
+
+  /** \brief The residual of the fit at a node, by which the change of its weight moves f. */
+  void
+  addResidual (std::size_t node, B *by_u, B &by_radius, B *direct)
+  {
+    B d[3], t, n[3], R[SIZE];
+    const B weight = weightOf (node, d, t);
+    for (int a = 0; a < 3; ++a)
+      d[a] *= scale_;
+    if constexpr (SIZE == 1)
+      for (int a = 0; a < 3; ++a)
+        centroid_[a] = xsimd::fma (weight / weight_, d[a], centroid_[a]);
+    normalOf (node, n);
+    TermsT::evaluate (d, t * t, R);
+    const B share = combine<TermsT> (a_, R);
+    B height = B (nodes_.lambda != nullptr ? nodes_.lambda[node] : 0.0f) * scale_;
+    if constexpr (CONSTRAINT == Constraint::FUNCTIONAL)
+      height -= dot (d, n);
+    B residual = share * (height - combine<TermsT> (c_, R));
+    if constexpr (CONSTRAINT == Constraint::HERMITE)
+    {
+      B of_shape[3], of_fit[3];
+      TermsT::slopes (a_, d, of_shape);
+      TermsT::slopes (c_, d, of_fit);
+      for (int a = 0; a < 3; ++a)
+        n[a] -= of_fit[a];
+      const B of_gradients = dot (of_shape, n);
+      residual += of_gradients;
+      by_radius = xsimd::fma (weight, of_gradients, by_radius);
+    }
+    B slope = kernel_.slope (t);
+    if (nodes_.confidence != nullptr)
+      slope *= B (nodes_.confidence[node]);
+    const B force = slope * residual;
+    by_radius = xsimd::fnma (B (0.5f) * t * t, force, by_radius);
+    for (int a = 0; a < 3; ++a)
+      by_u[a] = xsimd::fma (force, d[a], by_u[a]);
+    if constexpr (CONSTRAINT == Constraint::FUNCTIONAL)
+      for (int a = 0; a < 3; ++a)
+        direct[a] = xsimd::fma (weight * share, n[a], direct[a]);
+  }
+
+  /** \brief What the change of the raised linear pivots does to f: FieldFit::gradientOfRaises () for linear terms. */
+  void
+  subtractRaises (const B *radius_gradient, B *gradient) const
+  {
+    constexpr int LINEAR = SIZE > 1 ? 3 : 0;
+    auto any_raised = B (0.0f) > B (1.0f);
+    for (int j = 1; j <= LINEAR; ++j)
+      any_raised = any_raised || system_.raise (j) > B (0.0f);
+    if (!xsimd::any (any_raised))
+      return;
+    B v[4][SIZE], of_pivot[4][3], of_spread[3];
+    for (int j = 1; j <= LINEAR; ++j)
+      system_.residualOfTerm (j, v[j]);
+    sumRaises (radius_gradient, v, of_pivot, of_spread);
+    B of_raise[4][3];
+    for (int j = 1; j <= LINEAR; ++j)
+    {
+      const B raise = system_.raise (j), slope = system_.raiseSlope (j), pivot = system_.pivot (j);
+      const auto is_raised = raise > B (0.0f);
+      const B floor = xsimd::select (is_raised, system_.floor (j), B (1.0f));
+      const B by_floor = (raise - slope * pivot) / floor;
+      for (int a = 0; a < 3; ++a)
+      {
+        B of_this = xsimd::fnma (B (2.0f) * pivot, radius_gradient[a], of_pivot[j][a]);
+        for (int k = 1; k < j; ++k)
+          of_this = xsimd::fma (v[j][k] * v[j][k], of_raise[k][a], of_this);
+        const B of_floor = floor * (of_spread[a] / spread_ - B (2.0f) * radius_gradient[a]);
+        of_this = slope * of_this + by_floor * of_floor + B (2.0f) * raise * radius_gradient[a];
+        of_raise[j][a] = xsimd::select (is_raised, of_this, B (0.0f));
+        gradient[a] = xsimd::fnma (a_[j] * c_[j], of_raise[j][a], gradient[a]);
+      }
+    }
+  }
+
+  /** \brief Σ ∇w (v_j·R)² and Σ ∇w |u - centroid|². */
+  void
+  sumRaises (const B *radius_gradient, const B (*v)[SIZE], B (*of_pivot)[3], B *of_spread) const
+  {
+    for (int a = 0; a < 3; ++a)
+      of_pivot[1][a] = of_pivot[2][a] = of_pivot[3][a] = of_spread[a] = B (0.0f);
+    for (std::size_t i = 0; i < support_.size (); ++i)
+    {
+      const std::size_t node = support_.node (i);
+      B d[3], t, R[SIZE];
+      weightOf (node, d, t);
+      B slope = kernel_.slope (t);
+      if (nodes_.confidence != nullptr)
+        slope *= B (nodes_.confidence[node]);
+      B change[3], away (0.0f);
+      for (int a = 0; a < 3; ++a)
+      {
+        d[a] *= scale_;
+        change[a] = -slope * xsimd::fma (t * t, radius_gradient[a], d[a]);
+        const B from = d[a] - centroid_[a];
+        away = xsimd::fma (from, from, away);
+      }
+      TermsT::evaluate (d, t * t, R);
+      for (int a = 0; a < 3; ++a)
+        of_spread[a] = xsimd::fma (change[a], away, of_spread[a]);
+      for (int j = 1; j < (SIZE > 1 ? 4 : 1); ++j)
+      {
+        const B height = combine<TermsT> (v[j], R);
+        for (int a = 0; a < 3; ++a)
+          of_pivot[j][a] = xsimd::fma (change[a], height * height, of_pivot[j][a]);
+      }
+    }
+  }
+
+  const Settings &settings_;
+  const Nodes &nodes_;
+  const LaneSupport<B> &support_;
+  KernelT<B> kernel_;
+  B scale_;
+  LaneSystem<TermsT, B> system_;
+  B centroid_[3], spread_, weight_;
+  B c_[SIZE]; // M^-1 b
+  B a_[SIZE]; // M^-1 R(x)
+  B in_support_, on_surface_, in_quarter_, nearest_, nearest_node_;
+};
+
+} // namespace erkpa::lanes

@@ -1,0 +1,86 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "lanes.h"
+
+#include <xsimd/xsimd.hpp>
+
+namespace erkpa::lanes
+{
+
+/** \brief The kernels of kernel.h in lanes; exactly zero at t = 1. */
+template <typename B>
+struct PaperKernel
+{
+  explicit PaperKernel (Kernel) {}
+
+  B
+  weight (B t) const
+  {
+    return xsimd::fma (t * t * t, xsimd::fma (t, xsimd::fnma (B (6.0f), t, B (15.0f)), B (-10.0f)), B (1.0f));
+  }
+
+  /** \brief dw/dt / t. */
+  B
+  slope (B t) const
+  {
+    const B s = B (1.0f) - t;
+    return B (-30.0f) * t * s * s;
+  }
+};
+
+/** \brief Any of them, chosen at run time. */
+template <typename B>
+class AnyKernel
+{
+public:
+  explicit AnyKernel (Kernel kernel) : kernel_ (kernel) {}
+
+  B
+  weight (B t) const
+  {
+    const B s = B (1.0f) - t, s2 = s * s;
+    switch (kernel_)
+    {
+      case Kernel::WENDLAND_C2:
+        return s2 * s2 * xsimd::fma (B (4.0f), t, B (1.0f));
+      case Kernel::WENDLAND_C4:
+        return s2 * s2 * s2 * xsimd::fma (t, xsimd::fma (B (35.0f), t, B (18.0f)), B (3.0f)) * B (1.0f / 3.0f);
+      case Kernel::GAUSSIAN:
+      {
+        const B r = B (1.0f) - t * t;
+        return xsimd::exp (B (-STEEPNESS) * t * t) * r * r * r;
+      }
+      case Kernel::PAPER:
+        break;
+    }
+    return PaperKernel<B> (kernel_).weight (t);
+  }
+
+  B
+  slope (B t) const
+  {
+    const B s = B (1.0f) - t, s2 = s * s;
+    switch (kernel_)
+    {
+      case Kernel::WENDLAND_C2:
+        return B (-20.0f) * s2 * s;
+      case Kernel::WENDLAND_C4:
+        return B (-56.0f / 3.0f) * s2 * s2 * s * xsimd::fma (B (5.0f), t, B (1.0f));
+      case Kernel::GAUSSIAN:
+      {
+        const B r = B (1.0f) - t * t;
+        return -xsimd::exp (B (-STEEPNESS) * t * t) * r * r * xsimd::fma (B (2.0f * STEEPNESS), r, B (6.0f));
+      }
+      case Kernel::PAPER:
+        break;
+    }
+    return PaperKernel<B> (kernel_).slope (t);
+  }
+
+private:
+  static constexpr float STEEPNESS = 4.0f;
+  Kernel kernel_;
+};
+
+} // namespace erkpa::lanes

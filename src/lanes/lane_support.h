@@ -1,0 +1,217 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "lanes.h"
+
+#include <xsimd/xsimd.hpp>
+
+namespace erkpa::lanes
+{
+
+/** \brief One evaluation point in each lane, and the nodes within its support. See Support. */
+template <typename B>
+class LaneSupport
+{
+public:
+  static constexpr std::size_t WIDTH = B::size;
+
+  LaneSupport (const Settings &settings, const Nodes &nodes, const Points &points, std::size_t first,
+               const Scratch &scratch)
+      : nodes_ (nodes), list_ (scratch.list), rows_ (scratch.rows),
+        k_ (static_cast<float> (settings.k)), x_{B::load_unaligned (points.x + first),
+                                                 B::load_unaligned (points.y + first),
+                                                 B::load_unaligned (points.z + first)},
+        radius_ (B::load_unaligned (points.radius + first))
+  {
+    kth_ = radius_ * radius_;
+    if (settings.k > 0)
+      findNearest (B::load_unaligned (points.guess + first));
+    inverse_ = B (1.0f) / radius_;
+  }
+
+  /** \brief ε. */
+  B
+  radius () const
+  {
+    return radius_;
+  }
+
+  /** \brief ε², as the distances of nodes are compared with. */
+  B
+  squaredRadius () const
+  {
+    return kth_;
+  }
+
+  /** \brief 1/ε. */
+  B
+  inverse () const
+  {
+    return inverse_;
+  }
+
+  /** \brief Number of nodes to visit: with those in the supports of some lanes others, of no weight. */
+  std::size_t
+  size () const
+  {
+    return is_listed_ ? listed_ : nodes_.count;
+  }
+
+  std::size_t
+  node (std::size_t i) const
+  {
+    return is_listed_ ? list_[i] : i;
+  }
+
+  /** \brief x_i - x and its square. */
+  B
+  offset (std::size_t node, B *d) const
+  {
+    d[0] = B (nodes_.x[node]) - x_[0];
+    d[1] = B (nodes_.y[node]) - x_[1];
+    d[2] = B (nodes_.z[node]) - x_[2];
+    return xsimd::fma (d[2], d[2], xsimd::fma (d[1], d[1], d[0] * d[0]));
+  }
+
+  /** \brief ∇ε where it is the distance to the k-th node. */
+  void
+  radiusGradient (B *gradient) const
+  {
+    for (int a = 0; a < 3; ++a)
+      gradient[a] = B (0.0f);
+    auto is_found = B (0.0f) > B (1.0f);
+    for (std::size_t i = 0; i < listed_; ++i)
+    {
+      B d[3];
+      const B squared = offset (list_[i], d);
+      const auto is_kth = (squared >= kth_) && !is_found && B (list_[i] < nodes_.on_surface ? 1.0f : 0.0f) > B (0.5f) &&
+                          squared <= kth_;
+      for (int a = 0; a < 3; ++a)
+        gradient[a] = xsimd::select (is_kth, -d[a] * inverse_, gradient[a]);
+      is_found = is_found || is_kth;
+    }
+  }
+
+private:
+  /** \brief Lists the nodes that lie within the bounds of any lane, with their distances. */
+  void
+  listWithin (B bound)
+  {
+    listed_ = 0;
+    for (std::size_t i = 0; i < nodes_.on_surface; ++i)
+    {
+      B d[3];
+      const B squared = offset (i, d);
+      squared.store_unaligned (rows_ + WIDTH * listed_);
+      list_[listed_] = static_cast<std::uint32_t> (i);
+      listed_ += xsimd::any (squared <= bound) ? 1 : 0;
+    }
+  }
+
+  B
+  row (std::size_t i) const
+  {
+    return B::load_unaligned (rows_ + WIDTH * i);
+  }
+
+  B
+  countWithin (B squared) const
+  {
+    B count (0.0f);
+    for (std::size_t i = 0; i < listed_; ++i)
+      count += xsimd::select (row (i) <= squared, B (1.0f), B (0.0f));
+    return count;
+  }
+
+  /** \brief ε = distance to the k-th node, from a bound of it and a guess.
+   *
+   * The number of nodes within a distance grows about as its square. The bounds close in on a square within which there
+   * are just k; where distances are equal there is none, and single steps from node to node find the k-th.
+   */
+  void
+  findNearest (B guess)
+  {
+    constexpr int STEPS = 10, EVEN = 5;
+    B low (0.0f), high = radius_ * radius_ * B (1.0f + 1e-5f);
+    listWithin (high);
+    B in_low (0.0f), in_high = countWithin (high);
+    B middle = xsimd::min (guess * guess, high);
+    const B k (k_);
+    for (int step = 0; step < STEPS && xsimd::any (in_high > k); ++step)
+    {
+      const B count = countWithin (middle);
+      const auto enough = count >= k;
+      high = xsimd::select (enough, middle, high);
+      in_high = xsimd::select (enough, count, in_high);
+      low = xsimd::select (enough, low, middle);
+      in_low = xsimd::select (enough, in_low, count);
+      const B share = step < EVEN ? (k + B (0.4f) - in_low) / xsimd::max (in_high - in_low, B (1.0f)) : B (0.5f);
+      middle = xsimd::fma (share, high - low, low);
+      middle = xsimd::select (in_high > k, middle, high);
+    }
+    kth_ = largestWithin (high);
+    if (xsimd::any (in_high > k))
+      stepToKth (low, in_low, in_high > k);
+    radius_ = xsimd::sqrt (kth_);
+    shorten ();
+  }
+
+  B
+  largestWithin (B bound) const
+  {
+    B largest (0.0f);
+    for (std::size_t i = 0; i < listed_; ++i)
+      largest = xsimd::max (largest, xsimd::select (row (i) <= bound, row (i), B (0.0f)));
+    return largest;
+  }
+
+  template <typename MaskT>
+  void
+  stepToKth (B low, B in_low, MaskT open)
+  {
+    const B k (k_), far (3e38f);
+    auto searching = open;
+    low = xsimd::select (in_low > B (0.5f), low, B (-1.0f));
+    for (std::size_t step = 0; step <= listed_ && xsimd::any (searching); ++step)
+    {
+      B next = far;
+      for (std::size_t i = 0; i < listed_; ++i)
+        next = xsimd::min (next, xsimd::select (row (i) > low, row (i), far));
+      const auto reached = countWithin (next) >= k;
+      kth_ = xsimd::select (searching && reached, next, kth_);
+      searching = searching && !reached;
+      low = next;
+    }
+  }
+
+  /** \brief Keeps in the list what lies in the support of any lane, and adds the off-surface points. */
+  void
+  shorten ()
+  {
+    std::size_t kept = 0;
+    for (std::size_t i = 0; i < listed_; ++i)
+    {
+      list_[kept] = list_[i];
+      kept += xsimd::any (row (i) <= kth_) ? 1 : 0; // the k-th itself is asked for again
+    }
+    for (std::size_t i = nodes_.on_surface; i < nodes_.count; ++i)
+    {
+      B d[3];
+      list_[kept] = static_cast<std::uint32_t> (i);
+      kept += xsimd::any (offset (i, d) < kth_) ? 1 : 0;
+    }
+    listed_ = kept;
+    is_listed_ = true;
+  }
+
+  const Nodes &nodes_;
+  std::uint32_t *list_;
+  float *rows_;
+  std::size_t listed_ = 0;
+  bool is_listed_ = false;
+  float k_;
+  B x_[3];
+  B radius_, inverse_, kth_;
+};
+
+} // namespace erkpa::lanes

@@ -1,0 +1,128 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+
+/** \brief The fit of FieldFit at many evaluation points at once, one in each lane of the processor's vectors.
+ *
+ * LocalField is the definition, in double precision and for one point; this is the same in float for points that share
+ * a gathered neighbourhood and have no sharp surface in reach. What is here sees neither Eigen nor PCL, only arrays of
+ * floats: the sources behind it are compiled once for each instruction set, and memory of a class that aligns to the
+ * instruction set must not pass between such units.
+ *
+ * All lengths are in one unit, about the support radius, with the middle of the neighbourhood as origin: then nothing
+ * over- or underflows, whatever the unit of the cloud.
+ */
+namespace erkpa::lanes
+{
+
+/** \brief Points are taken in groups of at most this many; arrays of points must be readable up to a multiple of it. */
+constexpr std::size_t MAX_WIDTH = 16;
+
+enum class Basis
+{
+  CONSTANT,
+  LINEAR,
+  SPHERICAL,
+  QUADRATIC
+};
+
+enum class Constraint
+{
+  HERMITE,   ///< values and gradients
+  VALUES,    ///< values
+  FUNCTIONAL ///< eq. (2)
+};
+
+enum class Kernel
+{
+  PAPER,
+  WENDLAND_C2,
+  WENDLAND_C4,
+  GAUSSIAN
+};
+
+/** \brief What is asked for, the same for all points. */
+struct Settings
+{
+  Basis basis;
+  Constraint constraint;
+  Kernel kernel;
+  int k;             ///< ε(x) = distance to the k-th nearest node; 0: Points::radius says it
+  bool gradients;    ///< ∇f, border offsets and attributes as well
+  float reach;       ///< a point is in reach of the data where a quarter of its nodes lie within reach · ε + offset,
+  float offset;      ///< or ...
+  float near_enough; ///< ... the nearest one within this distance
+  int min_nodes;     ///< fewer nodes in the support leave f undefined
+};
+
+/** \brief The gathered value points, in an order that does not depend on what they were gathered for. */
+struct Nodes
+{
+  std::size_t count;
+  std::size_t on_surface; ///< the first ones are nodes; off-surface points follow
+  const float *x, *y, *z;
+  const float *nx, *ny, *nz;
+  const float *lambda;     ///< null: all zero
+  const float *confidence; ///< null: all one
+  const float *attributes; ///< channel after channel, count values each
+  std::size_t channels;
+};
+
+/** \brief The evaluation points. */
+struct Points
+{
+  std::size_t count;
+  const float *x, *y, *z;
+  const float *radius;           ///< ε(x); with k > 0 a bound that it does not exceed
+  const float *guess;            ///< with k > 0: about ε(x)
+  const float *growth[3];        ///< with k = 0: ∇ε(x); null: zero
+  std::size_t attributes_stride; ///< from a point's attributes to the next channel's
+};
+
+enum class State : std::uint8_t
+{
+  DEFINED,
+  UNDEFINED, ///< too few nodes: value and gradient are NaN
+  UNSETTLED  ///< the gradient needs terms or digits that are not there: ask LocalField
+};
+
+/** \brief What is found, one per point. Gradients and what follows may be null where they are not asked for. */
+struct Samples
+{
+  float *value, *radius;
+  std::uint8_t *in_reach; ///< see Settings::reach
+  State *state;
+  std::uint32_t *nearest; ///< place of the nearest node; null: not wanted
+  float *gradient[3];
+  float *border_offset;
+  float *attributes;      ///< channel after channel
+  std::uint32_t *support; ///< number of nodes in the support
+};
+
+/** \brief Memory for one call: as many places as there are nodes, and rows of MAX_WIDTH floats for distances. */
+struct Scratch
+{
+  std::uint32_t *list;
+  float *rows; ///< MAX_WIDTH · (count + 1)
+};
+
+/** \brief One instruction set. */
+struct Engine
+{
+  const char *name;
+  std::size_t width; ///< points per vector
+  void (*evaluate) (const Settings &settings, const Nodes &nodes, const Points &points, const Scratch &scratch,
+                    const Samples &samples);
+};
+
+/** \brief The engines this processor can run, the widest last; never empty. */
+const Engine *const *
+engines (std::size_t &count);
+
+/** \brief The widest of them. */
+const Engine &
+bestEngine ();
+
+} // namespace erkpa::lanes

@@ -1,0 +1,14 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "lane_engine.h"
+
+namespace erkpa::lanes
+{
+
+void
+evaluateAvx512 (const Settings &settings, const Nodes &nodes, const Points &points, const Scratch &scratch,
+                const Samples &samples)
+{
+  evaluate<xsimd::avx512f> (settings, nodes, points, scratch, samples);
+}
+
+} // namespace erkpa::lanes

@@ -1,0 +1,14 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "lane_engine.h"
+
+namespace erkpa::lanes
+{
+
+void
+evaluateBaseline (const Settings &settings, const Nodes &nodes, const Points &points, const Scratch &scratch,
+                  const Samples &samples)
+{
+  evaluate<xsimd::default_arch> (settings, nodes, points, scratch, samples);
+}
+
+} // namespace erkpa::lanes

@@ -1,0 +1,183 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "point_grid.h"
+
+#include "threads.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+namespace erkpa
+{
+
+namespace
+{
+
+class GridSearch : public NeighborSearch
+{
+public:
+  explicit GridSearch (std::shared_ptr<const PointGrid> grid) : grid_ (std::move (grid)) {}
+
+  void
+  nearestK (const Eigen::Vector3f &x, int k, std::vector<int> &indices,
+            std::vector<float> &squared_distances) const override
+  {
+    std::vector<std::pair<float, int>> found;
+    grid_->nearestK (x.cast<double> (), k, found);
+    store (found, indices, squared_distances);
+  }
+
+  void
+  withinRadius (const Eigen::Vector3f &x, double radius, std::vector<int> &indices,
+                std::vector<float> &squared_distances) const override
+  {
+    std::vector<std::pair<float, int>> found;
+    grid_->withinRadius (x.cast<double> (), radius, found);
+    store (found, indices, squared_distances);
+  }
+
+private:
+  static void
+  store (const std::vector<std::pair<float, int>> &found, std::vector<int> &indices, std::vector<float> &squared)
+  {
+    indices.clear ();
+    squared.clear ();
+    for (const auto &[distance, index] : found)
+    {
+      squared.push_back (distance);
+      indices.push_back (index);
+    }
+  }
+
+  std::shared_ptr<const PointGrid> grid_;
+};
+
+} // namespace
+
+PointGrid::PointGrid (const std::vector<Eigen::Vector3f> &positions, double cell, int threads)
+    : cell_ (cell > 0.0 && std::isfinite (cell) ? cell : 1.0)
+{
+  spanBulk (positions);
+  sortIntoCells (positions, threads);
+}
+
+/** \brief The box of nearly all points, with room around it; cells as asked for, or as few as there are points. */
+void
+PointGrid::spanBulk (const std::vector<Eigen::Vector3f> &positions)
+{
+  constexpr std::size_t SAMPLE = 4096, STRAY = 64; // one in so many may lie outside, on either side
+  constexpr double ROOM = 0.5, MAX_SIDE = 1e6;
+  const std::size_t step = std::max<std::size_t> (1, positions.size () / SAMPLE);
+  Eigen::Array3d high;
+  std::vector<float> sorted;
+  for (int a = 0; a < 3; ++a)
+  {
+    sorted.clear ();
+    for (std::size_t i = 0; i < positions.size (); i += step)
+      sorted.push_back (positions[i][a]);
+    std::sort (sorted.begin (), sorted.end ());
+    const auto at = [&sorted] (std::size_t i) { return static_cast<double> (sorted[i]); };
+    const std::size_t stray = sorted.size () / STRAY;
+    const double from = at (stray), to = at (sorted.size () - 1 - stray), room = ROOM * (to - from) + cell_;
+    low_[a] = std::max (from - room, at (0) - cell_);
+    high[a] = std::min (to + room, at (sorted.size () - 1) + cell_);
+  }
+  const auto bricks = [&] { return ((high - low_) / (8.0 * cell_)).floor () + 1.0; };
+  const double most = std::max (4096.0, 0.25 * static_cast<double> (positions.size ()));
+  while (bricks ().prod () > most || bricks ().maxCoeff () > MAX_SIDE)
+    cell_ *= 1.25;
+  inverse_ = 1.0 / cell_;
+  for (std::size_t a = 0; a < 3; ++a)
+  {
+    bricks_[a] = static_cast<int> (bricks ()[static_cast<Eigen::Index> (a)]);
+    cells_[a] = 8 * bricks_[a];
+  }
+}
+
+void
+PointGrid::sortIntoCells (const std::vector<Eigen::Vector3f> &positions, int threads)
+{
+  const std::size_t n = positions.size ();
+  std::vector<std::uint32_t> bricks (n);
+  std::vector<std::uint16_t> cells (n);
+  parallelRanges (n, threads,
+                  [&] (std::size_t first, std::size_t last)
+                  {
+                    for (std::size_t i = first; i < last; ++i)
+                    {
+                      const Cell c = cellOf (positions[i].cast<double> ().array ());
+                      bricks[i] = static_cast<std::uint32_t> (brickIndex ({c[0] >> 3, c[1] >> 3, c[2] >> 3}));
+                      cells[i] = static_cast<std::uint16_t> ((c[0] & 7) + 8 * ((c[1] & 7) + 8 * (c[2] & 7)));
+                    }
+                  });
+  slots_.assign (brickIndex ({0, 0, bricks_[2]}), NONE);
+  for (const std::uint32_t brick : bricks)
+    slots_[brick] = 0;
+  std::uint32_t used = 0;
+  for (std::uint32_t &slot : slots_)
+    if (slot != NONE)
+      slot = used++;
+  const auto cell_of = [&] (std::size_t i) { return std::size_t (512) * slots_[bricks[i]] + cells[i]; };
+  starts_.assign (std::size_t (512) * used + 1, 0);
+  for (std::size_t i = 0; i < n; ++i)
+    ++starts_[cell_of (i)];
+  std::uint32_t sum = 0;
+  for (std::uint32_t &start : starts_)
+    sum += std::exchange (start, sum);
+  index_.resize (n);
+  for (std::size_t i = 0; i < n; ++i)
+    index_[starts_[cell_of (i)]++] = static_cast<std::uint32_t> (i);
+  for (std::size_t c = starts_.size () - 1; c > 0; --c) // each start has moved to the next one
+    starts_[c] = starts_[c - 1];
+  starts_[0] = 0;
+  for (std::vector<float> &coordinates : coordinates_)
+    coordinates.resize (n);
+  parallelRanges (n, threads,
+                  [&] (std::size_t first, std::size_t last)
+                  {
+                    for (std::size_t place = first; place < last; ++place)
+                      for (int a = 0; a < 3; ++a)
+                        coordinates_[static_cast<std::size_t> (a)][place] = positions[index_[place]][a];
+                  });
+}
+
+void
+PointGrid::withinRadius (const Eigen::Vector3d &x, double radius, std::vector<std::pair<float, int>> &found) const
+{
+  found.clear ();
+  const Eigen::Vector3f center = x.cast<float> ();
+  const auto limit = static_cast<float> (radius * radius);
+  visitNear (x, radius,
+             [&] (std::size_t first, std::size_t last)
+             {
+               for (std::size_t place = first; place < last; ++place)
+               {
+                 const Eigen::Vector3f p (coordinates_[0][place], coordinates_[1][place], coordinates_[2][place]);
+                 const float squared = (p - center).squaredNorm ();
+                 if (squared <= limit)
+                   found.emplace_back (squared, static_cast<int> (index_[place]));
+               }
+             });
+}
+
+void
+PointGrid::nearestK (const Eigen::Vector3d &x, int k, std::vector<std::pair<float, int>> &found) const
+{
+  constexpr double EVERYWHERE = 1e18; // its square is still a float
+  const auto wanted = std::min (static_cast<std::size_t> (k), size ());
+  double reach = cell_;
+  for (withinRadius (x, reach, found); found.size () < wanted && reach < EVERYWHERE; withinRadius (x, reach, found))
+    reach *= 2.0;
+  if (found.size () <= wanted)
+    return;
+  std::nth_element (found.begin (), found.begin () + static_cast<std::ptrdiff_t> (wanted), found.end ());
+  found.resize (wanted);
+}
+
+NeighborSearch::ConstPtr
+makeGridSearch (std::shared_ptr<const PointGrid> grid)
+{
+  return std::make_shared<GridSearch> (std::move (grid));
+}
+
+} // namespace erkpa

@@ -1,0 +1,137 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "field_tests.h"
+
+#include "block_field.h"
+#include "local_field.h"
+#include "support.h"
+
+#include <algorithm>
+
+namespace
+{
+
+using erkpa::BlockField;
+using erkpa::Constraint;
+using erkpa::KernelType;
+using erkpa::LocalField;
+using erkpa::LocalSample;
+
+/** \brief How far the quick field is from its definition over a ball, in support radii; gradients as they are. */
+struct Difference
+{
+  double value = 0.0, gradient = 0.0, radius = 0.0, border = 0.0;
+  int compared = 0, gradients = 0, in_reach = 0;
+};
+
+class BlockFieldTest : public FieldTest
+{
+protected:
+  static shapes::Samples
+  wavySheet ()
+  {
+    shapes::Samples samples;
+    for (int i = 0; i < 3000; ++i)
+    {
+      Vector3d p = randomPoint (1.0);
+      p[2] = 0.1 * std::sin (3.0 * p[0]) + 0.1 * p[1] * p[1];
+      const Vector3d normal (-0.3 * std::cos (3.0 * p[0]), -0.2 * p[1], 1.0);
+      samples.add (p, normal.normalized ());
+    }
+    return samples;
+  }
+
+  static Difference
+  compare (const ImplicitField &field, const erkpa::lanes::Engine &engine)
+  {
+    Difference worst;
+    BlockField block (field, engine);
+    LocalField local (field);
+    constexpr double REACH = 0.9;
+    block.setReach (REACH, 0.0, 0.01);
+    for (int ball = 0; ball < 40; ++ball)
+    {
+      const Vector3d node = field.points ().positions[static_cast<std::size_t> (50 * ball)].cast<double> ();
+      const double extent = 0.6 * field.typicalRadius ();
+      if (!block.gather (node, extent))
+        continue;
+      std::vector<Vector3d> points;
+      for (int i = 0; i < 37; ++i)
+        points.push_back (node + extent * randomPoint (0.57));
+      for (const Vector3d &x : points)
+        block.addPoint (x);
+      block.evaluate (false);
+      for (std::size_t i = 0; i < points.size (); ++i)
+        addValue (local, points[i], block, i, worst);
+      block.evaluate (true);
+      for (std::size_t i = 0; i < points.size (); ++i)
+        addGradient (local, points[i], block, i, worst);
+    }
+    return worst;
+  }
+
+private:
+  static void
+  addValue (LocalField &local, const Vector3d &x, const BlockField &block, std::size_t i, Difference &worst)
+  {
+    local.gather (x, 0.0);
+    const double value = local.value (x), radius = local.support ().radius ();
+    EXPECT_EQ (!std::isnan (value), block.isSettled (i));
+    if (std::isnan (value))
+      return;
+    ++worst.compared;
+    worst.value = std::max (worst.value, std::abs (value - block.value (i)) / radius);
+    worst.radius = std::max (worst.radius, std::abs (radius - block.radius (i)) / radius);
+    const erkpa::Support &support = local.support ();
+    const bool in_reach = support.quartileDistance () <= 0.9 * radius || support.nearestDistance () <= 0.01;
+    worst.in_reach += in_reach == block.isInReach (i) ? 0 : 1;
+  }
+
+  static void
+  addGradient (LocalField &local, const Vector3d &x, const BlockField &block, std::size_t i, Difference &worst)
+  {
+    if (!block.isSettled (i))
+      return;
+    local.gather (x, 0.0);
+    const LocalSample sample = local.sample (x);
+    ++worst.gradients;
+    worst.gradient = std::max (worst.gradient, (sample.gradient - block.gradient (i)).norm ());
+    worst.border = std::max (worst.border, std::abs (sample.border_offset - block.borderOffset (i)));
+  }
+};
+
+TEST_F (BlockFieldTest, AgreesWithTheDefinitionForEveryInstructionSetBasisAndConstraint)
+{
+  const shapes::Samples samples = wavySheet ();
+  std::size_t engines = 0;
+  const erkpa::lanes::Engine *const *engine = erkpa::lanes::engines (engines);
+  for (std::size_t e = 0; e < engines; ++e)
+    for (const Order order : {Order::CONSTANT, Order::LINEAR, Order::SPHERICAL, Order::QUADRATIC})
+      for (const Constraint constraint : {Constraint::HERMITE, Constraint::FUNCTIONAL, Constraint::OFFSURFACE})
+        for (const bool constant_radius : {false, true})
+        {
+          FieldOptions options;
+          options.order = order;
+          options.constraint = constraint;
+          options.k = constant_radius ? 0 : 30;
+          options.radius = constant_radius ? 0.15 : 0.0;
+          const auto field = shapes::field (samples, options);
+          const Difference worst = compare (*field, *engine[e]);
+          const auto name = std::string (engine[e]->name) + " order " + std::to_string (static_cast<int> (order)) +
+                            " constraint " + std::to_string (static_cast<int> (constraint)) +
+                            (constant_radius ? " constant" : "");
+          // Functional values hang on the thickness of the nodes alone, which floats know less well.
+          const double scale = constraint == Constraint::HERMITE ? 1.0 : 20.0;
+          EXPECT_GT (worst.compared, 500) << name;
+          EXPECT_LT (worst.value, (order == Order::QUADRATIC ? 2e-3 : 2e-5 * scale)) << name;
+          EXPECT_LT (worst.gradient, 5e-4 * scale) << name;
+          // Those that want LocalField: ten terms in float, and raised pivots of squares.
+          const bool is_settled =
+              order != Order::QUADRATIC && !(order == Order::SPHERICAL && constraint == Constraint::FUNCTIONAL);
+          EXPECT_EQ (worst.gradients > 500, is_settled) << name;
+          EXPECT_LT (worst.radius, 1e-5) << name;
+          EXPECT_LT (worst.border, 1e-3) << name;
+          EXPECT_LE (worst.in_reach, 2) << name;
+        }
+}
+
+} // namespace
