@@ -2,6 +2,7 @@
 #include "border.h"
 
 #include "mesh_graph.h"
+#include "parallel_collect.h"
 
 #include <algorithm>
 #include <cstdint>
@@ -15,30 +16,47 @@ namespace
 
 using Triangle = std::array<int, 3>;
 
-/** \brief The vertices to cut away: beyond the limit, and connected to an open edge through such vertices. */
-std::vector<char>
-findBeyondBorder (double limit, const std::vector<Triangle> &triangles, const std::vector<double> &offsets)
+/** \brief The places of the triangles that have a marked vertex. */
+std::vector<std::size_t>
+findTouching (const std::vector<char> &marks, int threads, const std::vector<Triangle> &triangles)
 {
-  std::vector<char> beyond (offsets.size ());
-  bool any = false;
-  for (std::size_t v = 0; v < offsets.size (); ++v)
-  {
-    beyond[v] = offsets[v] <= limit ? 0 : 1;
-    any = any || beyond[v];
-  }
-  if (!any)
+  const auto is_marked = [&marks] (int v) { return marks[static_cast<std::size_t> (v)] != 0; };
+  return parallelCollect<std::size_t> (triangles.size (), threads,
+                                       [&] (std::size_t first, std::size_t last, std::vector<std::size_t> &found)
+                                       {
+                                         for (std::size_t i = first; i < last; ++i)
+                                           if (std::any_of (triangles[i].begin (), triangles[i].end (), is_marked))
+                                             found.push_back (i);
+                                       });
+}
+
+/** \brief The vertices to cut away: beyond the limit, and connected to the border through such vertices. */
+std::vector<char>
+findBeyondBorder (double limit, int threads, const std::vector<int> &border, const std::vector<Triangle> &triangles,
+                  const std::vector<double> &offsets)
+{
+  std::vector<char> beyond (offsets.size (), 0);
+  parallelRanges (offsets.size (), threads,
+                  [&] (std::size_t first, std::size_t last)
+                  {
+                    for (std::size_t v = first; v < last; ++v)
+                      beyond[v] = offsets[v] <= limit ? 0 : 1;
+                  });
+  const auto is_beyond = [&beyond] (int v) { return beyond[static_cast<std::size_t> (v)] != 0; };
+  if (std::none_of (border.begin (), border.end (), is_beyond))
     return {};
   DisjointSets regions (offsets.size ());
-  const auto is_beyond = [&beyond] (int v) { return beyond[static_cast<std::size_t> (v)] != 0; };
-  for (const Triangle &t : triangles)
-    for (int i = 0; i < 3; ++i)
-      if (is_beyond (t[static_cast<std::size_t> (i)]) && is_beyond (t[static_cast<std::size_t> ((i + 1) % 3)]))
-        regions.unite (t[static_cast<std::size_t> (i)], t[static_cast<std::size_t> ((i + 1) % 3)]);
+  for (const std::size_t index : findTouching (beyond, threads, triangles))
+    for (std::size_t i = 0; i < 3; ++i)
+    {
+      const int a = triangles[index][i], b = triangles[index][(i + 1) % 3];
+      if (is_beyond (a) && is_beyond (b))
+        regions.unite (a, b);
+    }
   std::vector<char> is_open (offsets.size (), 0);
-  for (const MeshEdge &edge : boundaryEdges (triangles))
-    for (const int v : {edge.low, edge.high})
-      if (is_beyond (v))
-        is_open[static_cast<std::size_t> (regions.find (v))] = 1;
+  for (const int v : border)
+    if (is_beyond (v))
+      is_open[static_cast<std::size_t> (regions.find (v))] = 1;
   for (std::size_t v = 0; v < offsets.size (); ++v)
     beyond[v] = beyond[v] && is_open[static_cast<std::size_t> (regions.find (static_cast<int> (v)))];
   return beyond;
@@ -121,30 +139,48 @@ private:
 } // namespace
 
 void
-trimBorder (double limit, std::vector<Triangle> &triangles, SurfaceVertices &vertices)
+trimBorder (double limit, int threads, std::vector<int> &border, std::vector<Triangle> &triangles,
+            SurfaceVertices &vertices)
 {
-  const std::vector<char> beyond = findBeyondBorder (limit, triangles, vertices.border_offsets);
+  if (border.empty ())
+    return;
+  const std::vector<char> beyond = findBeyondBorder (limit, threads, border, triangles, vertices.border_offsets);
   if (beyond.empty ())
     return;
+  const std::size_t first_new = vertices.positions.size ();
+  const std::vector<std::size_t> touching = findTouching (beyond, threads, triangles);
   Clipper clipper (limit, beyond, vertices);
-  std::vector<Triangle> kept;
-  kept.reserve (triangles.size ());
-  for (const Triangle &triangle : triangles)
-    clipper.clip (triangle, kept);
-  triangles.swap (kept);
+  std::vector<Triangle> clipped;
+  for (const std::size_t index : touching)
+    clipper.clip (triangles[index], clipped);
+  std::size_t kept = touching.front ();
+  for (std::size_t t = 0; t < touching.size (); ++t)
+  {
+    const std::size_t end = t + 1 < touching.size () ? touching[t + 1] : triangles.size ();
+    for (std::size_t i = touching[t] + 1; i < end; ++i)
+      triangles[kept++] = triangles[i];
+  }
+  triangles.resize (kept);
+  triangles.insert (triangles.end (), clipped.begin (), clipped.end ());
+  border.erase (std::remove_if (border.begin (), border.end (),
+                                [&beyond] (int v) { return beyond[static_cast<std::size_t> (v)] != 0; }),
+                border.end ());
+  for (std::size_t v = first_new; v < vertices.positions.size (); ++v)
+    border.push_back (static_cast<int> (v));
 }
 
 void
-splitFans (std::vector<Triangle> &triangles, SurfaceVertices &vertices)
+splitFans (const std::vector<int> &border, int threads, std::vector<Triangle> &triangles, SurfaceVertices &vertices)
 {
+  if (border.empty ())
+    return;
   std::vector<char> on_border (vertices.positions.size (), 0);
-  for (const MeshEdge &edge : boundaryEdges (triangles))
-    on_border[static_cast<std::size_t> (edge.low)] = on_border[static_cast<std::size_t> (edge.high)] = 1;
+  for (const int v : border)
+    on_border[static_cast<std::size_t> (v)] = 1;
   const auto is_on_border = [&on_border] (int v) { return on_border[static_cast<std::size_t> (v)] != 0; };
   std::vector<Triangle *> touching;
-  for (Triangle &t : triangles)
-    if (std::any_of (t.begin (), t.end (), is_on_border))
-      touching.push_back (&t);
+  for (const std::size_t index : findTouching (on_border, threads, triangles))
+    touching.push_back (&triangles[index]);
 
   // Corners of triangles that share an edge belong to one fan at either end of it.
   DisjointSets fans (3 * touching.size ());

@@ -15,14 +15,19 @@ namespace erkpa
  * of vertices with too large a border offset is cut away if it runs out to that edge, along the line where the
  * offset has the limit. A region that does not is a hole in the data which the surface closes: it stays.
  * \param[in] limit the border offset at which a surface ends
+ * \param[in,out] border the vertices on the border
  * \param[in,out] triangles the triangles; clipped ones are replaced
  * \param[in,out] vertices new vertices on the cut are appended, only their positions filled in
  */
 void
-trimBorder (double limit, std::vector<std::array<int, 3>> &triangles, SurfaceVertices &vertices);
+trimBorder (double limit, int threads, std::vector<int> &border, std::vector<std::array<int, 3>> &triangles,
+            SurfaceVertices &vertices);
 
-/** \brief Give each fan of triangles around a vertex a vertex of its own, so that borders do not touch in a point. */
+/** \brief Give each fan of triangles around a vertex a vertex of its own, so that borders do not touch in a point.
+ * \param[in] border all vertices on the border; others may be among them
+ */
 void
-splitFans (std::vector<std::array<int, 3>> &triangles, SurfaceVertices &vertices);
+splitFans (const std::vector<int> &border, int threads, std::vector<std::array<int, 3>> &triangles,
+           SurfaceVertices &vertices);
 
 } // namespace erkpa

@@ -22,7 +22,7 @@ struct CellTables
 {
   std::array<CellEdge, 12> edges{};
   std::array<Face, 6> faces{};
-  std::array<std::array<bool, 12>, 12> share{};
+  std::array<std::array<int, 12>, 12> common_faces{};
 
   CellTables ()
   {
@@ -35,10 +35,12 @@ struct CellTables
     for (int axis = 0; axis < 3; ++axis)
       for (int high = 0; high < 2; ++high)
         faces[2 * Index (axis) + Index (high)] = makeFace (axis, high != 0);
-    for (const Face &face : faces)
-      for (const int e : face.edges)
-        for (const int other : face.edges)
-          share[Index (e)][Index (other)] = true;
+    for (auto &row : common_faces)
+      row.fill (-1);
+    for (Index face = 0; face < faces.size (); ++face)
+      for (const int e : faces[face].edges)
+        for (const int other : faces[face].edges)
+          common_faces[Index (e)][Index (other)] = static_cast<int> (face);
   }
 
 private:
@@ -109,14 +111,17 @@ cellEdge (int edge)
   return tables ().edges[Index (edge)];
 }
 
-bool
-shareFace (int edge, int other)
+int
+commonFace (int edge, int other)
 {
-  return tables ().share[Index (edge)][Index (other)];
+  return tables ().common_faces[Index (edge)][Index (other)];
 }
 
+namespace
+{
+
 CellLoops
-traceLoops (const std::array<double, 8> &values)
+followFaces (const std::array<double, 8> &values)
 {
   std::array<int, 12> next;
   next.fill (-1);
@@ -130,13 +135,48 @@ traceLoops (const std::array<double, 8> &values)
     const auto loop = Index (loops.count++);
     for (int edge = start; next[Index (edge)] >= 0;)
     {
-      loops.edges[loop][Index (loops.lengths[loop]++)] = edge;
+      loops.edges[loop][Index (loops.lengths[loop]++)] = static_cast<std::uint8_t> (edge);
       const int following = next[Index (edge)];
       next[Index (edge)] = -1;
       edge = following;
     }
   }
   return loops;
+}
+
+/** \brief The loops by the corners inside, as bits, where the signs alone tell them. */
+struct LoopTable
+{
+  std::array<CellLoops, 256> loops;
+  std::array<bool, 256> is_ambiguous{};
+
+  LoopTable ()
+  {
+    for (Index inside = 0; inside < 256; ++inside)
+    {
+      std::array<double, 8> values;
+      for (Index corner = 0; corner < 8; ++corner)
+        values[corner] = inside >> corner & 1 ? -1.0 : 1.0;
+      loops[inside] = followFaces (values);
+      const auto is_inside = [&values] (int corner) { return values[Index (corner)] < 0.0; };
+      for (const Face &face : tables ().faces)
+        is_ambiguous[inside] = is_ambiguous[inside] || (is_inside (face.corners[0]) == is_inside (face.corners[2]) &&
+                                                        is_inside (face.corners[1]) == is_inside (face.corners[3]) &&
+                                                        is_inside (face.corners[0]) != is_inside (face.corners[1]));
+    }
+  }
+};
+
+} // namespace
+
+CellLoops
+traceLoops (const std::array<double, 8> &values)
+{
+  static const LoopTable table;
+  Index inside = 0;
+  for (Index corner = 0; corner < 8; ++corner)
+    inside |= values[corner] < 0.0 ? Index (1) << corner : 0;
+  return table.is_ambiguous[inside] ? followFaces (values) : table.loops[inside];
 }
 
 } // namespace erkpa

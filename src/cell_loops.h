@@ -4,6 +4,7 @@
 #include "sparse_grid.h"
 
 #include <array>
+#include <cstdint>
 
 namespace erkpa
 {
@@ -18,16 +19,20 @@ struct CellEdge
 CellEdge
 cellEdge (int edge);
 
-/** \brief Whether two edges of a cell lie in one of its faces. */
-bool
-shareFace (int edge, int other);
+/** \brief The face of a cell that holds two of its edges: 2 a is the lower one across axis a, 2 a + 1 the upper one;
+ * -1 where none does. */
+int
+commonFace (int edge, int other);
+
+/** \brief Edges of a cell along a loop. */
+using LoopEdges = std::array<std::uint8_t, 12>;
 
 /** \brief The closed polygons in which a surface crosses the cell: edges in order, counter-clockwise from outside. */
 struct CellLoops
 {
-  int count = 0;
-  std::array<int, 4> lengths{};               ///< edges per loop
-  std::array<std::array<int, 12>, 4> edges{}; ///< the edges of each loop
+  std::uint8_t count = 0;
+  std::array<std::uint8_t, 4> lengths{}; ///< edges per loop
+  std::array<LoopEdges, 4> edges{};      ///< the edges of each loop
 };
 
 /** \brief Trace the loops through the faces of a cell.

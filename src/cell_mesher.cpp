@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "cell_mesher.h"
 
-#include "cell_loops.h"
+#include "grid_window.h"
 #include "loop_triangulation.h"
-#include "threads.h"
+#include "parallel_collect.h"
 
 #include <algorithm>
+#include <utility>
 
 namespace erkpa
 {
@@ -15,66 +16,99 @@ namespace
 
 using Triangle = std::array<int, 3>;
 
-CellLoop
-loopOf (const SparseGrid &grid, const GridPoint &cell, const CellLoops &loops, int loop)
-{
-  CellLoop result;
-  result.edges = loops.edges[static_cast<std::size_t> (loop)];
-  const auto length = static_cast<std::size_t> (loops.lengths[static_cast<std::size_t> (loop)]);
-  for (std::size_t i = 0; i < length; ++i)
-  {
-    const CellEdge edge = cellEdge (result.edges[i]);
-    result.ring.push_back (grid.vertexOnEdge (cell + cornerOffset (edge.corner), edge.axis));
-  }
-  return result;
-}
-
+/** \brief Append the triangles of a loop; false, and none of them, where it needs a vertex of its own. */
 bool
-hasSeveralSides (const CellLoop &loop, const SurfaceVertices &vertices)
+triangulateRing (const int *ring, std::size_t size, const LoopEdges &edges, const SurfaceVertices &vertices,
+                 std::vector<Triangle> &triangles)
 {
-  const auto key = [&] (int v) { return vertices.side_keys[static_cast<std::size_t> (v)]; };
-  return std::any_of (loop.ring.begin (), loop.ring.end (), [&] (int v) { return key (v) != key (loop.ring[0]); });
-}
-
-void
-meshCell (const SparseGrid &grid, const GridPoint &cell, const SurfaceVertices &vertices, CellMesh &mesh)
-{
-  const CellLoops loops = traceLoops (grid.cornerValues (cell));
-  for (int l = 0; l < loops.count; ++l)
+  if (size == 3)
   {
-    const CellLoop loop = loopOf (grid, cell, loops, l);
-    if (hasSeveralSides (loop, vertices))
-      mesh.mixed_loops.push_back (loop);
-    else if (!triangulateCell (loop, vertices, mesh.triangles))
-      mesh.centered_loops.push_back (loop);
+    triangles.push_back ({ring[0], ring[1], ring[2]});
+    return true;
   }
+  LoopShape shape;
+  shape.size = static_cast<int> (size);
+  shape.edges = edges;
+  for (std::size_t i = 0; i < size; ++i)
+  {
+    shape.positions[i] = vertices.positions[static_cast<std::size_t> (ring[i])];
+    shape.normals[i] = vertices.normals[static_cast<std::size_t> (ring[i])];
+  }
+  LoopTriangles corners;
+  if (!triangulateLoop (shape, corners))
+    return false;
+  for (std::size_t i = 0; i < static_cast<std::size_t> (corners.count); ++i)
+  {
+    const Triangle &t = corners.corners[i];
+    triangles.push_back ({ring[t[0]], ring[t[1]], ring[t[2]]});
+  }
+  return true;
 }
 
-template <typename T>
-void
-append (const std::vector<T> &from, std::vector<T> &to)
+/** \brief Meshes the cells of one stretch. */
+class CellMesher
 {
-  to.insert (to.end (), from.begin (), from.end ());
-}
+public:
+  CellMesher (const SparseGrid &grid, const SurfaceVertices &vertices) : window_ (grid), vertices_ (vertices) {}
+
+  void
+  mesh (const GridPoint &cell, CellMesh &mesh)
+  {
+    window_.moveTo (cell);
+    const CellLoops loops = traceLoops (window_.cornerValues (cell));
+    for (std::size_t l = 0; l < loops.count; ++l)
+    {
+      edges_ = loops.edges[l];
+      size_ = loops.lengths[l];
+      for (std::size_t i = 0; i < size_; ++i)
+      {
+        const CellEdge edge = cellEdge (edges_[i]);
+        ring_[i] = window_.vertexOnEdge (cell + cornerOffset (edge.corner), edge.axis);
+      }
+      if (hasSeveralSides ())
+        mesh.mixed_loops.push_back ({{ring_.begin (), ring_.begin () + size_}, edges_});
+      else if (!triangulateRing (ring_.data (), size_, edges_, vertices_, mesh.triangles))
+        mesh.centered_loops.push_back ({{ring_.begin (), ring_.begin () + size_}, edges_});
+      findBorder (cell, mesh.border);
+    }
+  }
+
+private:
+  bool
+  hasSeveralSides () const
+  {
+    const auto key = [this] (int v) { return vertices_.side_keys[static_cast<std::size_t> (v)]; };
+    return std::any_of (ring_.begin (), ring_.begin () + size_, [&] (int v) { return key (v) != key (ring_[0]); });
+  }
+
+  /** \brief The sides of the loop in faces whose other cell has no surface. */
+  void
+  findBorder (const GridPoint &cell, std::vector<int> &border)
+  {
+    for (std::size_t i = 0; i < size_; ++i)
+    {
+      const std::size_t next = i + 1 < size_ ? i + 1 : 0;
+      const int face = commonFace (edges_[i], edges_[next]), step = face & 1 ? 1 : -1;
+      const GridPoint across{cell.x + (face / 2 == 0 ? step : 0), cell.y + (face / 2 == 1 ? step : 0),
+                             cell.z + (face / 2 == 2 ? step : 0)};
+      if (!window_.isActive (across))
+        border.insert (border.end (), {ring_[i], ring_[next]});
+    }
+  }
+
+  GridWindow window_;
+  const SurfaceVertices &vertices_;
+  std::array<int, 12> ring_{}; // of the loop at hand
+  LoopEdges edges_{};
+  std::size_t size_ = 0;
+};
 
 } // namespace
 
 bool
 triangulateCell (const CellLoop &loop, const SurfaceVertices &vertices, std::vector<Triangle> &triangles)
 {
-  std::vector<Eigen::Vector3d> positions, normals;
-  for (const int v : loop.ring)
-  {
-    positions.push_back (vertices.positions[static_cast<std::size_t> (v)]);
-    normals.push_back (vertices.normals[static_cast<std::size_t> (v)]);
-  }
-  std::vector<Triangle> corners;
-  if (!triangulateLoop (positions, normals, loop.edges, corners))
-    return false;
-  const auto at = [&loop] (int corner) { return loop.ring[static_cast<std::size_t> (corner)]; };
-  for (const Triangle &t : corners)
-    triangles.push_back ({at (t[0]), at (t[1]), at (t[2])});
-  return true;
+  return triangulateRing (loop.ring.data (), loop.ring.size (), loop.edges, vertices, triangles);
 }
 
 void
@@ -87,22 +121,30 @@ addFan (const std::vector<int> &ring, int center, std::vector<Triangle> &triangl
 CellMesh
 meshCells (const SparseGrid &grid, const std::vector<GridPoint> &cells, int threads, const SurfaceVertices &vertices)
 {
-  constexpr std::size_t STRETCH = 1024;
-  std::vector<CellMesh> stretches ((cells.size () + STRETCH - 1) / STRETCH);
+  constexpr std::size_t STRETCH = 4096;
+  const std::size_t count = (cells.size () + STRETCH - 1) / STRETCH;
+  std::vector<std::vector<Triangle>> triangles (count);
+  std::vector<std::vector<CellLoop>> centered (count), mixed (count);
+  std::vector<std::vector<int>> border (count);
   parallelFor (
-      stretches.size (), threads, [] { return 0; },
+      count, threads, [] { return 0; },
       [&] (int, std::size_t i)
       {
+        CellMesher mesher (grid, vertices);
+        CellMesh part;
+        part.triangles.reserve (2 * STRETCH + STRETCH / 2);
         for (std::size_t c = i * STRETCH; c < std::min (cells.size (), (i + 1) * STRETCH); ++c)
-          meshCell (grid, cells[c], vertices, stretches[i]);
+          mesher.mesh (cells[c], part);
+        triangles[i].swap (part.triangles);
+        centered[i].swap (part.centered_loops);
+        mixed[i].swap (part.mixed_loops);
+        border[i].swap (part.border);
       });
   CellMesh mesh;
-  for (const CellMesh &stretch : stretches)
-  {
-    append (stretch.triangles, mesh.triangles);
-    append (stretch.centered_loops, mesh.centered_loops);
-    append (stretch.mixed_loops, mesh.mixed_loops);
-  }
+  mesh.triangles = joinParts (std::move (triangles), threads);
+  mesh.centered_loops = joinParts (std::move (centered), threads);
+  mesh.mixed_loops = joinParts (std::move (mixed), threads);
+  mesh.border = joinParts (std::move (border), threads);
   return mesh;
 }
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "sparse_grid.h"
+#include "cell_loops.h"
 #include "surface_vertices.h"
 
 #include <array>
@@ -13,8 +13,8 @@ namespace erkpa
 /** \brief A closed polygon in which the surface crosses a cell, over the vertices on the cell's edges. */
 struct CellLoop
 {
-  std::vector<int> ring;       ///< vertices, counter-clockwise from outside
-  std::array<int, 12> edges{}; ///< the cell's edge of each
+  std::vector<int> ring; ///< vertices, counter-clockwise from outside
+  LoopEdges edges{};     ///< the cell's edge of each
 };
 
 /** \brief What the cells give. */
@@ -23,6 +23,7 @@ struct CellMesh
   std::vector<std::array<int, 3>> triangles;
   std::vector<CellLoop> centered_loops; ///< need a vertex of their own inside the cell
   std::vector<CellLoop> mixed_loops; ///< have vertices on several sides of sharp surfaces: there may be a crease inside
+  std::vector<int> border; ///< vertices of the sides beyond which the surface does not go on, each once or more
 };
 
 /** \brief Turn the loops of cells into triangles over the placed vertices, in the order of the cells. */

@@ -104,6 +104,8 @@ std::vector<Crease>
 traceCreases (const ImplicitField &field, const PolygonizerOptions &options, const std::vector<VertexPair> &edges,
               const std::vector<std::array<int, 3>> &triangles, const SurfaceVertices &vertices)
 {
+  if (edges.empty ())
+    return {};
   const std::vector<VertexPair> kept = keepEdges (edges, triangles, vertices.positions.size ());
   std::vector<int> surfaces (kept.size (), -1);
   parallelFor (

@@ -49,7 +49,8 @@ TriangleShape::TriangleShape (const Vector3d &a, const Vector3d &b, const Vector
 
 EdgeJudge::EdgeJudge (double voxel, const std::vector<VertexPair> &creases, const SurfaceVertices &vertices,
                       HalfEdges &edges)
-    : voxel_ (voxel), vertices_ (vertices), edges_ (edges), degrees_ (vertices.positions.size (), 0)
+    : voxel_ (voxel), vertices_ (vertices), edges_ (edges),
+      degrees_ (creases.empty () ? 0 : vertices.positions.size (), 0)
 {
   for (const auto &[a, b] : creases)
   {
@@ -63,7 +64,7 @@ EdgeJudge::EdgeJudge (double voxel, const std::vector<VertexPair> &creases, cons
 }
 
 double
-EdgeJudge::sineAfterCollapse (int h)
+EdgeJudge::sineAfterCollapse (int h) const
 {
   const int from = edges_.start (h), to = edges_.end (h);
   if (movesCrease (h) || !edges_.canCollapse (h))

@@ -47,11 +47,22 @@ public:
    * \return -1 where it must not be
    */
   double
-  sineAfterCollapse (int h);
+  sineAfterCollapse (int h) const;
 
   /** \brief By how much the flip of an edge raises the sine of the smallest angle; -1 where it must not be flipped. */
   double
   gainOfFlip (int h) const;
+
+  /** \brief Visit the vertices whose triangles count where edges of \a v collapse. */
+  template <typename VisitT>
+  void
+  visitOwn (int v, VisitT visit) const
+  {
+    if (isPlain (v))
+      visit (v);
+    else
+      edges_.visitNeighbors (v, visit);
+  }
 
 private:
   const Eigen::Vector3d &
@@ -69,7 +80,7 @@ private:
   bool
   isPlain (int v) const
   {
-    return degrees_[static_cast<std::size_t> (v)] == 0;
+    return degrees_.empty () || degrees_[static_cast<std::size_t> (v)] == 0;
   }
 
   /** \brief Whether a collapse along this half-edge moves a crease, or an end or corner of one, off its place. */
@@ -96,7 +107,7 @@ private:
   double voxel_;
   const SurfaceVertices &vertices_;
   HalfEdges &edges_;
-  std::vector<int> degrees_; // crease edges per vertex
+  std::vector<int> degrees_; // crease edges per vertex; empty where there are none
 };
 
 } // namespace erkpa

@@ -1,65 +1,69 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "half_edges.h"
 
+#include "parallel_collect.h"
+#include "side_table.h"
+
 #include <algorithm>
+#include <utility>
 
 namespace erkpa
 {
 
 using Triangle = std::array<int, 3>;
 
-HalfEdges::HalfEdges (const std::vector<Triangle> &triangles, std::size_t vertex_count)
-    : twins_ (3 * triangles.size (), -1), creases_ (3 * triangles.size (), 0), outgoing_ (vertex_count, -1),
-      places_ (vertex_count, Place::INSIDE), marks_ (vertex_count, 0)
+HalfEdges::HalfEdges (std::vector<Triangle> &&triangles, std::size_t vertex_count, int threads)
+    : triangles_ (std::move (triangles)), twins_ (3 * triangles_.size (), -1), outgoing_ (vertex_count, -1),
+      places_ (vertex_count, Place::INSIDE)
 {
-  starts_.reserve (3 * triangles.size ());
-  for (const Triangle &t : triangles)
-    starts_.insert (starts_.end (), t.begin (), t.end ());
-  findTwins ();
-  for (int h = 0; h < static_cast<int> (twins_.size ()); ++h)
-  {
-    const int v = start (h);
-    Place &place = places_[static_cast<std::size_t> (v)];
-    if (twin (h) < 0)
-    {
-      place = place == Place::INSIDE ? Place::BORDER : Place::TANGLED;
-      outgoing (v) = h;
-    }
-    else if (outgoing (v) < 0)
-      outgoing (v) = h;
-  }
+  findTwins (threads);
+  findOutgoing (threads);
 }
 
 void
-HalfEdges::findTwins ()
+HalfEdges::findTwins (int threads)
 {
-  struct Side
+  const SideTable table (triangles_, outgoing_.size (), threads);
+  const auto pair_sides = [&] (int v)
   {
-    int end, h;
-  };
-  std::vector<int> firsts (outgoing_.size () + 1, 0);
-  std::vector<Side> sides (starts_.size ()); // by where they start
-  for (const int v : starts_)
-    ++firsts[static_cast<std::size_t> (v)];
-  int sum = 0;
-  for (int &first : firsts)
-    first = sum += first;
-  for (int h = static_cast<int> (starts_.size ()) - 1; h >= 0; --h)
-    sides[static_cast<std::size_t> (--firsts[static_cast<std::size_t> (start (h))])] = {end (h), h};
-  for (std::size_t v = 0; v < outgoing_.size (); ++v)
-    for (int i = firsts[v]; i < firsts[v + 1]; ++i)
+    const int *const last = table.end (static_cast<std::size_t> (v));
+    for (const int *side = table.begin (static_cast<std::size_t> (v)); side != last; ++side)
     {
-      const Side &side = sides[static_cast<std::size_t> (i)];
-      if (side.end < static_cast<int> (v))
-        continue; // found from there
-      const auto other = sides.begin () + firsts[static_cast<std::size_t> (side.end)],
-                 last = sides.begin () + firsts[static_cast<std::size_t> (side.end) + 1];
-      const auto found = std::find_if (other, last, [v] (const Side &one) { return one.end == static_cast<int> (v); });
-      if (found == last)
+      if (start (*side) != v)
         continue;
-      pair (side.h, found->h, false);
-      found->end = -1; // taken
+      const auto is_twin = [&, other = end (*side)] (int h) { return start (h) == other && twin (h) < 0; };
+      const int *const found = std::find_if (table.begin (static_cast<std::size_t> (v)), last, is_twin);
+      if (found != last)
+        pair (*side, *found, false);
     }
+  };
+  parallelRanges (outgoing_.size (), threads,
+                  [&] (std::size_t first, std::size_t end)
+                  {
+                    for (std::size_t v = first; v < end; ++v)
+                      pair_sides (static_cast<int> (v));
+                  });
+}
+
+void
+HalfEdges::findOutgoing (int threads)
+{
+  const std::vector<int> open =
+      parallelCollect<int> (twins_.size (), threads,
+                            [this] (std::size_t first, std::size_t last, std::vector<int> &found)
+                            {
+                              for (std::size_t h = first; h < last; ++h)
+                                if (twins_[h] < 0)
+                                  found.push_back (static_cast<int> (h));
+                            });
+  for (int h = static_cast<int> (twins_.size ()) - 1; h >= 0; --h)
+    setOutgoing (start (h), h);
+  for (const int h : open)
+  {
+    Place &place = places_[static_cast<std::size_t> (start (h))];
+    place = place == Place::INSIDE ? Place::BORDER : Place::TANGLED;
+    setOutgoing (start (h), h);
+  }
 }
 
 void
@@ -69,13 +73,15 @@ HalfEdges::pair (int h, int other, bool crease)
     if (one >= 0)
     {
       twins_[static_cast<std::size_t> (one)] = one == h ? other : h;
-      creases_[static_cast<std::size_t> (one)] = crease ? 1 : 0;
+      if (!creases_.empty ())
+        creases_[static_cast<std::size_t> (one)] = crease ? 1 : 0;
     }
 }
 
 void
 HalfEdges::setCrease (int h, bool crease)
 {
+  creases_.resize (twins_.size (), 0);
   pair (h, twin (h), crease);
 }
 
@@ -95,25 +101,25 @@ HalfEdges::between (int a, int b) const
 }
 
 bool
-HalfEdges::canCollapse (int h)
+HalfEdges::canCollapse (int h) const
 {
   const int from = start (h), to = end (h);
   if (place (from) != Place::INSIDE || place (to) == Place::TANGLED)
     return false;
-  ++mark_;
+  constexpr std::size_t MOST = 64; // neighbours; more are left alone
+  std::array<int, MOST> neighbors;
+  std::size_t count = 0;
+  visitNeighbors (to, [&] (int v) { neighbors[count < MOST ? count++ : 0] = v; });
+  if (count == MOST)
+    return false;
   int around_to = 0, around_from = 0, common = 0;
-  around (to,
-          [&] (int side)
-          {
-            ++around_to;
-            marks_[static_cast<std::size_t> (end (side))] = mark_;
-            marks_[static_cast<std::size_t> (start (previous (side)))] = mark_;
-          });
+  around (to, [&] (int) { ++around_to; });
+  const auto last = neighbors.begin () + static_cast<std::ptrdiff_t> (count);
   around (from,
           [&] (int side)
           {
             ++around_from;
-            common += marks_[static_cast<std::size_t> (end (side))] == mark_ ? 1 : 0;
+            common += std::find (neighbors.begin () + 1, last, end (side)) != last ? 1 : 0;
           });
   return common == 2 && (around_to > 3 || around_from > 3); // the two across the edge; not a tetrahedron
 }
@@ -133,14 +139,14 @@ HalfEdges::collapse (int h)
     if (forth)
       replacement = inner;
     if (outgoing (apex) == previous (gone))
-      outgoing (apex) = forth ? outer : inner;
+      setOutgoing (apex, forth ? outer : inner);
     if (outgoing (to) == gone || outgoing (to) == next (gone))
-      outgoing (to) = -1;
+      setOutgoing (to, -1);
     pair (inner, outer, onCrease (of_to) || onCrease (of_from));
   }
   if (outgoing (to) < 0)
-    outgoing (to) = replacement;
-  outgoing (from) = -1;
+    setOutgoing (to, replacement);
+  setOutgoing (from, -1);
   for (const int gone : {h, back})
     for (const int side : {gone, next (gone), previous (gone)})
       setStart (side, -1);
@@ -169,19 +175,19 @@ HalfEdges::flip (int h)
   }
   for (std::size_t i = 0; i < 4; ++i)
   {
-    int &first = outgoing (starts[i]);
+    const int first = outgoing (starts[i]);
     if (first == h || first == g || std::find (old_sides.begin (), old_sides.end (), first) != old_sides.end ())
-      first = new_sides[i];
+      setOutgoing (starts[i], new_sides[i]);
   }
 }
 
-void
-HalfEdges::collect (std::vector<Triangle> &triangles) const
+std::vector<Triangle>
+HalfEdges::release ()
 {
-  triangles.clear ();
-  for (int h = 0; h < static_cast<int> (starts_.size ()); h += 3)
-    if (isAlive (h))
-      triangles.push_back ({start (h), start (h + 1), start (h + 2)});
+  triangles_.erase (
+      std::remove_if (triangles_.begin (), triangles_.end (), [] (const Triangle &t) { return t[0] < 0; }),
+      triangles_.end ());
+  return std::move (triangles_);
 }
 
 } // namespace erkpa

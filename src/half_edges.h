@@ -23,7 +23,7 @@ public:
     TANGLED ///< several borders meet in the vertex
   };
 
-  HalfEdges (const std::vector<std::array<int, 3>> &triangles, std::size_t vertex_count);
+  HalfEdges (std::vector<std::array<int, 3>> &&triangles, std::size_t vertex_count, int threads);
 
   static int
   next (int h)
@@ -40,7 +40,7 @@ public:
   int
   start (int h) const
   {
-    return starts_[static_cast<std::size_t> (h)];
+    return triangles_[static_cast<std::size_t> (h) / 3][static_cast<std::size_t> (h) % 3];
   }
 
   int
@@ -70,7 +70,7 @@ public:
   bool
   onCrease (int h) const
   {
-    return creases_[static_cast<std::size_t> (h)] != 0;
+    return !creases_.empty () && creases_[static_cast<std::size_t> (h)] != 0;
   }
 
   void
@@ -85,7 +85,7 @@ public:
   void
   around (int v, VisitT visit) const
   {
-    const int first = outgoing_[static_cast<std::size_t> (v)];
+    const int first = outgoing (v);
     int h = first;
     while (h >= 0)
     {
@@ -96,9 +96,24 @@ public:
     }
   }
 
+  /** \brief Visit a vertex and its neighbours. */
+  template <typename VisitT>
+  void
+  visitNeighbors (int v, VisitT visit) const
+  {
+    visit (v);
+    around (v,
+            [&] (int h)
+            {
+              visit (end (h));
+              if (twin (previous (h)) < 0)
+                visit (start (previous (h)));
+            });
+  }
+
   /** \brief Whether the mesh stays a manifold of the same topology, and its border the same, by collapse (h). */
   bool
-  canCollapse (int h);
+  canCollapse (int h) const;
 
   /** \brief Move the start of a half-edge into its end: two triangles vanish. */
   void
@@ -108,36 +123,49 @@ public:
   void
   flip (int h);
 
-  /** \brief The triangles that are left, in the order of their half-edges. */
-  void
-  collect (std::vector<std::array<int, 3>> &triangles) const;
+  std::size_t
+  triangleCount () const
+  {
+    return triangles_.size ();
+  }
+
+  /** \brief Give up the triangles that are left, in the order of their half-edges. */
+  std::vector<std::array<int, 3>>
+  release ();
 
 private:
   void
   setStart (int h, int v)
   {
-    starts_[static_cast<std::size_t> (h)] = v;
+    triangles_[static_cast<std::size_t> (h) / 3][static_cast<std::size_t> (h) % 3] = v;
   }
 
-  int &
-  outgoing (int v)
+  int
+  outgoing (int v) const
   {
     return outgoing_[static_cast<std::size_t> (v)];
+  }
+
+  void
+  setOutgoing (int v, int h)
+  {
+    outgoing_[static_cast<std::size_t> (v)] = h;
   }
 
   void
   pair (int h, int other, bool crease);
 
   void
-  findTwins ();
+  findTwins (int threads);
 
-  std::vector<int> starts_; // per half-edge its vertex, -1 where the triangle has vanished
+  void
+  findOutgoing (int threads);
+
+  std::vector<std::array<int, 3>> triangles_; // vertices -1 where a triangle has vanished
   std::vector<int> twins_;
-  std::vector<char> creases_;
+  std::vector<char> creases_; // per half-edge; empty where there are none
   std::vector<int> outgoing_; // per vertex a half-edge that starts there: on the border the first one; -1 if none does
   std::vector<Place> places_;
-  std::vector<int> marks_; // per vertex: the last question of canCollapse in which it was a neighbour
-  int mark_ = 0;
 };
 
 } // namespace erkpa

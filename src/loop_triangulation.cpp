@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "loop_triangulation.h"
 
-#include "cell_loops.h"
-
 #include <Eigen/Geometry>
 
 #include <cstddef>
@@ -19,24 +17,25 @@ class LoopTriangulator
 public:
   static constexpr double FORBIDDEN = 1e12; // of the polygon's squared size
 
-  LoopTriangulator (const std::vector<Eigen::Vector3d> &positions, const std::vector<Eigen::Vector3d> &normals,
-                    const std::array<int, 12> &edges)
-      : positions_ (positions), normals_ (normals), edges_ (edges), size_ (static_cast<int> (positions.size ()))
+  explicit LoopTriangulator (const LoopShape &loop) : loop_ (loop), size_ (loop.size)
   {
     for (int i = 1; i < size_; ++i)
+    {
       scale_ += (at (i) - at (0)).squaredNorm ();
+      entries_[static_cast<std::size_t> (i) - 1][static_cast<std::size_t> (i)] = {0.0, 0};
+    }
     for (int length = 2; length < size_; ++length)
       for (int i = 0; i + length < size_; ++i)
         findBest (i, i + length);
   }
 
   void
-  collect (int i, int j, std::vector<std::array<int, 3>> &triangles) const
+  collect (int i, int j, LoopTriangles &triangles) const
   {
     if (j - i < 2)
       return;
     const int apex = entry (i, j).apex;
-    triangles.push_back ({i, apex, j});
+    triangles.corners[static_cast<std::size_t> (triangles.count++)] = {i, apex, j};
     collect (i, apex, triangles);
     collect (apex, j, triangles);
   }
@@ -50,8 +49,8 @@ public:
 private:
   struct Entry
   {
-    double cost = 0.0;
-    int apex = 0;
+    double cost;
+    int apex;
   };
 
   const Entry &
@@ -63,13 +62,13 @@ private:
   const Eigen::Vector3d &
   at (int i) const
   {
-    return positions_[static_cast<std::size_t> (i)];
+    return loop_.positions[static_cast<std::size_t> (i)];
   }
 
   void
   findBest (int i, int j)
   {
-    Entry best;
+    Entry best{0.0, 0};
     for (int apex = i + 1; apex < j; ++apex)
     {
       const double cost = entry (i, apex).cost + entry (apex, j).cost + costOfTriangle (i, apex, j);
@@ -85,7 +84,7 @@ private:
   bool
   inOneFace (int i, int j) const
   {
-    return shareFace (edges_[static_cast<std::size_t> (i)], edges_[static_cast<std::size_t> (j)]);
+    return commonFace (loop_.edges[static_cast<std::size_t> (i)], loop_.edges[static_cast<std::size_t> (j)]) >= 0;
   }
 
   /** \brief Twice the area that the triangle loses when seen along its vertices' mean normal. */
@@ -93,33 +92,33 @@ private:
   costOfTriangle (int i, int k, int j) const
   {
     const Eigen::Vector3d area = (at (k) - at (i)).cross (at (j) - at (i));
-    const Eigen::Vector3d normal = normals_[static_cast<std::size_t> (i)] + normals_[static_cast<std::size_t> (k)] +
-                                   normals_[static_cast<std::size_t> (j)];
+    const auto &normals = loop_.normals;
+    const Eigen::Vector3d normal = normals[static_cast<std::size_t> (i)] + normals[static_cast<std::size_t> (k)] +
+                                   normals[static_cast<std::size_t> (j)];
     const double length = normal.norm ();
     return area.norm () - (length > 0.0 ? area.dot (normal) / length : 0.0);
   }
 
-  const std::vector<Eigen::Vector3d> &positions_;
-  const std::vector<Eigen::Vector3d> &normals_;
-  const std::array<int, 12> &edges_;
+  const LoopShape &loop_;
   int size_;
   double scale_ = 0.0;
-  std::array<std::array<Entry, 12>, 12> entries_{};
+  std::array<std::array<Entry, 12>, 12> entries_;
 };
 
 } // namespace
 
 bool
-triangulateLoop (const std::vector<Eigen::Vector3d> &positions, const std::vector<Eigen::Vector3d> &normals,
-                 const std::array<int, 12> &edges, std::vector<std::array<int, 3>> &triangles)
+triangulateLoop (const LoopShape &loop, LoopTriangles &triangles)
 {
-  if (positions.size () == 3)
+  triangles.count = 0;
+  if (loop.size == 3)
   {
-    triangles.push_back ({0, 1, 2});
+    triangles.corners[0] = {0, 1, 2};
+    triangles.count = 1;
     return true;
   }
-  const LoopTriangulator triangulator (positions, normals, edges);
-  triangulator.collect (0, static_cast<int> (positions.size ()) - 1, triangles);
+  const LoopTriangulator triangulator (loop);
+  triangulator.collect (0, loop.size - 1, triangles);
   return triangulator.isAllowed ();
 }
 

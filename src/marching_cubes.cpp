@@ -7,17 +7,18 @@
 #include "crease_edges.h"
 #include "crease_lines.h"
 #include "feature_loops.h"
-#include "mesh_graph.h"
+#include "parallel_collect.h"
 #include "sliver_removal.h"
 #include "sparse_grid.h"
+#include "surface_pieces.h"
 #include "surface_tracking.h"
 #include "surface_vertices.h"
 #include "text.h"
-#include "threads.h"
 
 #include <Eigen/Geometry>
 
 #include <algorithm>
+#include <atomic>
 #include <cmath>
 #include <string>
 #include <utility>
@@ -72,44 +73,6 @@ meshCentered (const std::vector<CellLoop> &loops, std::vector<Triangle> &triangl
   }
 }
 
-/** \brief Drops the pieces of surface that too few nodes support; returns how many. */
-std::size_t
-dropUnsupported (const SparseGrid &grid, const std::vector<GridPoint> &cells_of_nodes, int min_points,
-                 std::size_t vertex_count, std::vector<Triangle> &triangles)
-{
-  DisjointSets pieces (vertex_count);
-  std::vector<char> used (vertex_count, 0);
-  for (const Triangle &t : triangles)
-  {
-    pieces.unite (t[0], t[1]);
-    pieces.unite (t[1], t[2]);
-    for (const int v : t)
-      used[static_cast<std::size_t> (v)] = 1;
-  }
-  std::vector<int> support (vertex_count, 0);
-  for (const GridPoint &cell : cells_of_nodes)
-  {
-    if (cell.x == SurfaceTracker::NO_CELL || !grid.isActive (cell))
-      continue;
-    const CellLoops loops = traceLoops (grid.cornerValues (cell));
-    const CellEdge edge = cellEdge (loops.edges[0][0]);
-    const int vertex = grid.vertexOnEdge (cell + cornerOffset (edge.corner), edge.axis);
-    if (used[static_cast<std::size_t> (vertex)])
-      ++support[static_cast<std::size_t> (pieces.find (vertex))];
-  }
-  std::size_t dropped = 0;
-  for (int v = 0; v < static_cast<int> (vertex_count); ++v)
-    dropped +=
-        used[static_cast<std::size_t> (v)] && pieces.find (v) == v && support[static_cast<std::size_t> (v)] < min_points
-            ? 1
-            : 0;
-  triangles.erase (std::remove_if (triangles.begin (), triangles.end (),
-                                   [&] (const Triangle &t)
-                                   { return support[static_cast<std::size_t> (pieces.find (t[0]))] < min_points; }),
-                   triangles.end ());
-  return dropped;
-}
-
 Outcome
 noSurface (const ImplicitField &field, double voxel, std::size_t dropped)
 {
@@ -124,42 +87,92 @@ noSurface (const ImplicitField &field, double voxel, std::size_t dropped)
 
 /** \brief Gives vertices where the field has no gradient the mean direction of their triangles. */
 void
-fillNormals (const std::vector<Triangle> &triangles, SurfaceVertices &vertices)
+fillNormals (const std::vector<Triangle> &triangles, int threads, SurfaceVertices &vertices)
 {
-  std::vector<Eigen::Vector3d> sums;
-  const auto is_missing = [] (const Eigen::Vector3d &n) { return n.isZero (0.0); };
-  if (std::none_of (vertices.normals.begin (), vertices.normals.end (), is_missing))
+  const auto is_missing = [&vertices] (int v) { return vertices.normals[static_cast<std::size_t> (v)].isZero (0.0); };
+  const std::vector<int> missing =
+      parallelCollect<int> (vertices.normals.size (), threads,
+                            [&] (std::size_t first, std::size_t last, std::vector<int> &found)
+                            {
+                              for (int v = static_cast<int> (first); v < static_cast<int> (last); ++v)
+                                if (is_missing (v))
+                                  found.push_back (v);
+                            });
+  if (missing.empty ())
     return;
-  sums.assign (vertices.normals.size (), Eigen::Vector3d::Zero ());
+  std::vector<Eigen::Vector3d> sums (missing.size (), Eigen::Vector3d::Zero ());
   for (const Triangle &t : triangles)
   {
     const auto at = [&] (std::size_t i) { return vertices.positions[static_cast<std::size_t> (t[i])]; };
-    const Eigen::Vector3d area = (at (1) - at (0)).cross (at (2) - at (0));
     for (const int v : t)
-      sums[static_cast<std::size_t> (v)] += area;
+      if (is_missing (v))
+        sums[static_cast<std::size_t> (std::lower_bound (missing.begin (), missing.end (), v) - missing.begin ())] +=
+            (at (1) - at (0)).cross (at (2) - at (0));
   }
-  for (std::size_t v = 0; v < sums.size (); ++v)
-    if (is_missing (vertices.normals[v]))
-      vertices.normals[v] = sums[v].norm () > 0.0 ? Eigen::Vector3d (sums[v].normalized ()) : Eigen::Vector3d::UnitZ ();
+  for (std::size_t i = 0; i < missing.size (); ++i)
+    vertices.normals[static_cast<std::size_t> (missing[i])] =
+        sums[i].norm () > 0.0 ? Eigen::Vector3d (sums[i].normalized ()) : Eigen::Vector3d::UnitZ ();
 }
 
-TriangleMesh
-toInputFrame (const OrientedPoints &points, const SurfaceVertices &vertices, std::vector<Triangle> &triangles,
-              std::vector<Crease> creases)
+/** \brief The vertices that triangles use, in their order. */
+std::vector<int>
+findUsed (const std::vector<Triangle> &triangles, std::size_t vertex_count, int threads)
 {
+  std::vector<std::atomic<char>> is_used (vertex_count);
+  parallelRanges (triangles.size (), threads,
+                  [&] (std::size_t first, std::size_t last)
+                  {
+                    for (std::size_t t = first; t < last; ++t)
+                      for (const int v : triangles[t])
+                        is_used[static_cast<std::size_t> (v)].store (1, std::memory_order_relaxed);
+                  });
+  return parallelCollect<int> (vertex_count, threads,
+                               [&] (std::size_t first, std::size_t last, std::vector<int> &used)
+                               {
+                                 for (std::size_t v = first; v < last; ++v)
+                                   if (is_used[v].load (std::memory_order_relaxed))
+                                     used.push_back (static_cast<int> (v));
+                               });
+}
+
+/** \brief The mesh of the vertices in use, in the frame of the cloud. */
+TriangleMesh
+toInputFrame (const OrientedPoints &points, int threads, const SurfaceVertices &vertices,
+              std::vector<Triangle> &triangles, std::vector<Crease> creases)
+{
+  const std::vector<int> used = findUsed (triangles, vertices.positions.size (), threads);
+  const auto channels = static_cast<std::size_t> (points.channels);
   TriangleMesh mesh;
   mesh.creases = std::move (creases);
-  mesh.vertices.reserve (vertices.positions.size ());
-  mesh.normals.reserve (vertices.positions.size ());
-  for (std::size_t v = 0; v < vertices.positions.size (); ++v)
-  {
-    mesh.vertices.emplace_back ((vertices.positions[v] + points.origin).cast<float> ());
-    mesh.normals.emplace_back (vertices.normals[v].cast<float> ());
-  }
   mesh.channels = points.channels;
-  mesh.attributes = vertices.attributes;
+  mesh.vertices.resize (used.size ());
+  mesh.normals.resize (used.size ());
+  mesh.attributes.resize (used.size () * channels);
+  std::vector<int> renumbered (vertices.positions.size ());
+  parallelRanges (used.size (), threads,
+                  [&] (std::size_t first, std::size_t last)
+                  {
+                    for (std::size_t i = first; i < last; ++i)
+                    {
+                      const auto v = static_cast<std::size_t> (used[i]);
+                      renumbered[v] = static_cast<int> (i);
+                      mesh.vertices[i] = (vertices.positions[v] + points.origin).cast<float> ();
+                      mesh.normals[i] = vertices.normals[v].cast<float> ();
+                      std::copy_n (vertices.attributes.data () + v * channels, channels,
+                                   mesh.attributes.data () + i * channels);
+                    }
+                  });
+  parallelRanges (triangles.size (), threads,
+                  [&] (std::size_t first, std::size_t last)
+                  {
+                    for (std::size_t t = first; t < last; ++t)
+                      for (int &v : triangles[t])
+                        v = renumbered[static_cast<std::size_t> (v)];
+                  });
+  for (Crease &crease : mesh.creases)
+    for (int &v : crease.vertices)
+      v = renumbered[static_cast<std::size_t> (v)];
   mesh.triangles.swap (triangles);
-  removeUnusedVertices (mesh);
   return mesh;
 }
 
@@ -212,18 +225,18 @@ polygonize (const ImplicitField &field, const PolygonizerOptions &options, Trian
   const std::vector<MeshedLoop> loops = meshLoops (field, options, cell_mesh.mixed_loops, voxel, vertices, report);
   std::vector<VertexPair> creases = addCreases (cell_mesh.mixed_loops, loops, triangles, vertices);
   const std::size_t in_cells = vertices.positions.size ();
-  trimBorder (options.border_offset, triangles, vertices);
+  trimBorder (options.border_offset, options.threads, cell_mesh.border, triangles, vertices);
   projectVertices (field, options, in_cells, 0.1 * voxel, vertices, report);
   const int min_points = std::min (options.min_component_points, static_cast<int> (field.points ().size ()) / 2);
-  report.dropped_components =
-      dropUnsupported (grid, tracker.cellsOfNodes (), min_points, vertices.positions.size (), triangles);
+  report.dropped_components = dropUnsupported (grid, tracker.cellsOfNodes (), min_points, options.threads,
+                                               vertices.positions.size (), triangles);
   if (triangles.empty ())
     return noSurface (field, voxel, report.dropped_components);
-  splitFans (triangles, vertices);
-  fillNormals (triangles, vertices);
-  removeSlivers (voxel, creases, triangles, vertices);
+  splitFans (cell_mesh.border, options.threads, triangles, vertices);
+  fillNormals (triangles, options.threads, vertices);
+  removeSlivers (voxel, creases, triangles, vertices, options.threads);
   std::vector<Crease> lines = traceCreases (field, options, creases, triangles, vertices);
-  mesh = toInputFrame (field.points (), vertices, triangles, std::move (lines));
+  mesh = toInputFrame (field.points (), options.threads, vertices, triangles, std::move (lines));
   return {};
 }
 

@@ -48,19 +48,4 @@ private:
   std::vector<int> parents_;
 };
 
-/** \brief An undirected edge of a mesh and the number of its triangles. */
-struct MeshEdge
-{
-  int low, high;
-  int triangles;
-};
-
-/** \brief All edges of a mesh, each once, sorted. */
-std::vector<MeshEdge>
-collectEdges (const std::vector<std::array<int, 3>> &triangles);
-
-/** \brief The edges of one triangle only. */
-std::vector<MeshEdge>
-boundaryEdges (const std::vector<std::array<int, 3>> &triangles);
-
 } // namespace erkpa

@@ -201,7 +201,7 @@ buildMesh (const ImplicitField &field, const Options &options, TriangleMesh &mes
   const StageClock total (report.seconds_total);
   const StageClock clock (report.seconds_polygonizer);
   Outcome outcome = polygonize (field, options.polygonizer, mesh, report.polygonizer, progress);
-  report.topology = measureTopology (mesh);
+  report.topology = measureTopology (mesh, options.polygonizer.threads);
   report.creases = mesh.creases;
   report.corners = findCorners (mesh.creases);
   if (options.polygonizer.split_normals)

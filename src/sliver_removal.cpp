@@ -2,8 +2,11 @@
 #include "sliver_removal.h"
 
 #include "edge_judge.h"
+#include "mesh_regions.h"
+#include "parallel_collect.h"
 
 #include <algorithm>
+#include <utility>
 
 namespace erkpa
 {
@@ -16,6 +19,7 @@ using Triangle = std::array<int, 3>;
 // Lengths are in voxels, angles given by their sines.
 constexpr double SHORT = 0.2;             // sides that collapse
 constexpr double LONGEST_COLLAPSED = 0.6; // of a sliver
+constexpr double REGION = 48.0;           // for one thread at a time
 constexpr double SLIVER = 0.09;           // smallest angle (5 degrees)
 constexpr double NARROW = 0.17;           // smallest angle that calls for a flip (10 degrees)
 constexpr double LEAST_GAIN = 0.05;       // by which a flip must widen the smallest angle
@@ -23,49 +27,59 @@ constexpr double LEAST_GAIN = 0.05;       // by which a flip must widen the smal
 class SliverRemover
 {
 public:
-  SliverRemover (double voxel, const std::vector<VertexPair> &creases, std::vector<Triangle> &triangles,
+  SliverRemover (double voxel, int threads, const std::vector<VertexPair> &creases, std::vector<Triangle> &triangles,
                  const SurfaceVertices &vertices)
-      : short_ (square (SHORT * voxel)), longest_collapsed_ (square (LONGEST_COLLAPSED * voxel)),
-        triangles_ (triangles), edges_ (triangles, vertices.positions.size ()),
-        judge_ (voxel, creases, vertices, edges_)
+      : short_ (square (SHORT * voxel)), longest_collapsed_ (square (LONGEST_COLLAPSED * voxel)), threads_ (threads),
+        edges_ (std::move (triangles), vertices.positions.size (), threads), judge_ (voxel, creases, vertices, edges_),
+        regions_ (REGION * voxel, vertices.positions, threads), changed_in_ (vertices.positions.size (), 0)
   {
   }
 
   void
   run ()
   {
-    for (int h = 0; h < static_cast<int> (3 * triangles_.size ()); ++h)
-      queueIfShort (h);
+    queue_ = parallelCollect<ShortEdge> (3 * edges_.triangleCount (), threads_,
+                                         [this] (std::size_t first, std::size_t last, std::vector<ShortEdge> &found)
+                                         {
+                                           for (std::size_t h = first; h < last; ++h)
+                                             queueIfShort (static_cast<int> (h), found);
+                                         });
     collapseQueued ();
-    std::vector<int> narrow;
-    for (int h = 0; h < static_cast<int> (3 * triangles_.size ()); h += 3)
-      if (edges_.isAlive (h) && judge_.shapeOf (h).sine < NARROW)
-        narrow.push_back (h);
+    const std::vector<int> narrow = findNarrow ();
     constexpr int PASSES = 4;
     bool changed = true;
-    for (int pass = 0; pass < PASSES && changed; ++pass)
+    for (pass_ = 1; pass_ <= PASSES && changed; ++pass_)
     {
-      changed = false;
-      for (const int h : narrow)
-        changed = (edges_.isAlive (h) && mend (h)) || changed;
+      changed = mendAll (narrow);
       collapseQueued ();
     }
   }
 
-  /** \brief Drop what vanished; the creases are those that are left. */
-  std::vector<VertexPair>
-  finish ()
+  /** \brief The triangles that are left; the creases become those that are left. */
+  std::vector<Triangle>
+  finish (std::vector<VertexPair> &creases)
   {
-    std::vector<VertexPair> creases;
-    for (int h = 0; h < static_cast<int> (3 * triangles_.size ()); ++h)
-      if (edges_.onCrease (h) && edges_.isAlive (h) && edges_.twin (h) < h)
-        creases.push_back (orderedPair (edges_.start (h), edges_.end (h)));
-    std::sort (creases.begin (), creases.end ());
-    edges_.collect (triangles_);
-    return creases;
+    if (!creases.empty ())
+    {
+      creases.clear ();
+      for (int h = 0; h < static_cast<int> (3 * edges_.triangleCount ()); ++h)
+        if (edges_.onCrease (h) && edges_.isAlive (h) && edges_.twin (h) < h)
+          creases.push_back (orderedPair (edges_.start (h), edges_.end (h)));
+      std::sort (creases.begin (), creases.end ());
+    }
+    return edges_.release ();
   }
 
 private:
+  using ShortEdge = std::pair<double, int>; // squared length and half-edge
+
+  /** \brief What one thread finds while it changes the mesh. */
+  struct Worker
+  {
+    std::vector<ShortEdge> queue; // edges that have become short
+    bool changed = false;
+  };
+
   static double
   square (double x)
   {
@@ -73,13 +87,49 @@ private:
   }
 
   void
-  queueIfShort (int h)
+  queueIfShort (int h, std::vector<ShortEdge> &queue) const
   {
     if (edges_.start (h) > edges_.end (h))
       return; // its twin is queued
     const double length = judge_.squaredLength (h);
     if (length < short_)
-      queue_.emplace_back (length, h);
+      queue.emplace_back (length, h);
+  }
+
+  /** \brief Visit the vertices whose triangles count for \a sides sides of a triangle from \a h on. */
+  template <typename VisitT>
+  void
+  visitOwn (int h, int sides, VisitT visit) const
+  {
+    judge_.visitOwn (edges_.start (h), visit);
+    judge_.visitOwn (edges_.end (h), visit);
+    if (sides > 1)
+      judge_.visitOwn (edges_.start (HalfEdges::previous (h)), visit);
+  }
+
+  /** \brief Run work (worker, half-edge) for each of many in which the triangles at \a sides sides from it on may
+   * change. \param[in] at at (job) is the half-edge \return whether any changed the mesh
+   */
+  template <typename AtT, typename NeedT, typename WorkT>
+  bool
+  runAll (std::size_t count, int sides, AtT at, NeedT is_needed, WorkT work)
+  {
+    bool changed = false;
+    regions_.run (
+        count,
+        [&] (std::size_t job, auto visit)
+        {
+          const int h = at (job);
+          if (edges_.isAlive (h) && is_needed (h))
+            visitOwn (h, sides, [&] (int v) { edges_.visitNeighbors (v, visit); });
+        },
+        [] { return Worker (); }, [&] (Worker &worker, std::size_t job) { work (worker, at (job)); },
+        [&] (Worker &worker)
+        {
+          queue_.insert (queue_.end (), worker.queue.begin (), worker.queue.end ());
+          changed = changed || worker.changed;
+        });
+    return changed;
   }
 
   /** \brief Collapse short edges, the shortest first, and those that become short thereby. */
@@ -89,40 +139,73 @@ private:
     constexpr int PASSES = 4;
     for (int pass = 0; pass < PASSES && !queue_.empty (); ++pass)
     {
-      std::vector<std::pair<double, int>> queue;
+      std::vector<ShortEdge> queue;
       queue.swap (queue_);
       std::sort (queue.begin (), queue.end ());
-      for (const auto &[length, h] : queue)
-        if (edges_.isAlive (h) && judge_.squaredLength (h) < short_)
-          collapseBetterWay (h);
+      runAll (
+          queue.size (), 1, [&] (std::size_t job) { return queue[job].second; },
+          [this] (int h) { return judge_.squaredLength (h) < short_; },
+          [this] (Worker &worker, int h) { collapseBetterWay (h, worker); });
     }
     queue_.clear ();
   }
 
-  /** \brief Collapse or flip a side of a triangle if it is narrow. */
+  std::vector<int>
+  findNarrow () const
+  {
+    return parallelCollect<int> (edges_.triangleCount (), threads_,
+                                 [this] (std::size_t first, std::size_t last, std::vector<int> &found)
+                                 {
+                                   for (std::size_t t = first; t < last; ++t)
+                                     if (isNarrow (static_cast<int> (3 * t)))
+                                       found.push_back (static_cast<int> (3 * t));
+                                 });
+  }
+
   bool
-  mend (int h)
+  isNarrow (int h) const
+  {
+    return edges_.isAlive (h) && judge_.shapeOf (h).sine < NARROW;
+  }
+
+  /** \brief Mend the triangles around which anything has changed since the last pass. */
+  bool
+  mendAll (const std::vector<int> &narrow)
+  {
+    const auto is_new = [this] (int h)
+    {
+      bool any = pass_ == 1;
+      visitOwn (h, 3, [&] (int v) { any = any || changed_in_[static_cast<std::size_t> (v)] >= pass_ - 1; });
+      return any;
+    };
+    return runAll (
+        narrow.size (), 3, [&] (std::size_t job) { return narrow[job]; },
+        [&] (int h) { return isNarrow (h) && is_new (h); },
+        [this] (Worker &worker, int h) { worker.changed = mend (h, worker) || worker.changed; });
+  }
+
+  /** \brief Collapse or flip a side of a narrow triangle. */
+  bool
+  mend (int h, Worker &worker)
   {
     const double sine = judge_.shapeOf (h).sine;
-    if (sine >= NARROW)
-      return false;
     std::array<std::pair<double, int>, 3> sides;
     for (int i = 0; i < 3; ++i)
       sides[static_cast<std::size_t> (i)] = {judge_.squaredLength (h + i), h + i};
     std::sort (sides.begin (), sides.end ());
-    if (sides[0].first < short_ && collapseBetterWay (sides[0].second))
+    if (sides[0].first < short_ && collapseBetterWay (sides[0].second, worker))
       return true;
     if (flipBestSide (h))
       return true;
     for (const auto &[length, side] : sides)
-      if (sine < SLIVER && length < longest_collapsed_ && collapseBetterWay (side))
+      if (sine < SLIVER && length < longest_collapsed_ && collapseBetterWay (side, worker))
         return true;
     return false;
   }
 
   /** \brief Collapse an edge onto the vertex that leaves the wider angles. */
   bool
-  collapseBetterWay (int h)
+  collapseBetterWay (int h, Worker &worker)
   {
     const int back = edges_.twin (h);
     if (back < 0)
@@ -132,11 +215,12 @@ private:
       return false;
     const int chosen = forth_sine >= back_sine ? h : back, kept = edges_.end (chosen);
     edges_.collapse (chosen);
+    markChanged (kept);
     edges_.around (kept,
-                   [this] (int side)
+                   [&] (int side)
                    {
-                     queueIfShort (side);
-                     queueIfShort (HalfEdges::previous (side));
+                     queueIfShort (side, worker.queue);
+                     queueIfShort (HalfEdges::previous (side), worker.queue);
                    });
     return true;
   }
@@ -156,27 +240,39 @@ private:
         best = h;
       }
     }
-    if (best >= 0)
-      edges_.flip (best);
-    return best >= 0;
+    if (best < 0)
+      return false;
+    edges_.flip (best);
+    markChanged (edges_.start (best));
+    markChanged (edges_.end (best));
+    return true;
+  }
+
+  void
+  markChanged (int v)
+  {
+    edges_.visitNeighbors (v, [this] (int w) { changed_in_[static_cast<std::size_t> (w)] = pass_; });
   }
 
   double short_, longest_collapsed_; // squared lengths
-  std::vector<Triangle> &triangles_;
+  int threads_;
   HalfEdges edges_;
   EdgeJudge judge_;
-  std::vector<std::pair<double, int>> queue_; // short edges by their squared length
+  MeshRegions regions_;
+  std::vector<ShortEdge> queue_;
+  signed char pass_ = 0;                // over the narrow triangles
+  std::vector<signed char> changed_in_; // per vertex: the last pass in which its triangles changed
 };
 
 } // namespace
 
 void
 removeSlivers (double voxel, std::vector<VertexPair> &creases, std::vector<Triangle> &triangles,
-               const SurfaceVertices &vertices)
+               const SurfaceVertices &vertices, int threads)
 {
-  SliverRemover remover (voxel, creases, triangles, vertices);
+  SliverRemover remover (voxel, threads, creases, triangles, vertices);
   remover.run ();
-  creases = remover.finish ();
+  triangles = remover.finish (creases);
 }
 
 } // namespace erkpa

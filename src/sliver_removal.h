@@ -17,10 +17,10 @@ namespace erkpa
  * \param[in] voxel side of a grid cell
  * \param[in,out] creases the edges of the mesh that run along creases, sorted; those that are no edges of it are
  * dropped \param[in,out] triangles of an oriented mesh \param[in] vertices with normals of f; those that are not used
- * any more stay
+ * any more stay \param[in] threads 0 = all processors; the mesh does not depend on it
  */
 void
 removeSlivers (double voxel, std::vector<VertexPair> &creases, std::vector<std::array<int, 3>> &triangles,
-               const SurfaceVertices &vertices);
+               const SurfaceVertices &vertices, int threads = 0);
 
 } // namespace erkpa

@@ -1,12 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <erkpa/triangle_mesh.h>
 
+#include "concurrent_sets.h"
 #include "mesh_graph.h"
+#include "side_table.h"
 
 #include <Eigen/Geometry>
 
 #include <algorithm>
-#include <cstdint>
 #include <map>
 #include <set>
 #include <utility>
@@ -14,56 +15,80 @@
 namespace erkpa
 {
 
-std::vector<MeshEdge>
-collectEdges (const std::vector<std::array<int, 3>> &triangles)
+namespace
 {
-  std::vector<std::uint64_t> keys;
-  keys.reserve (3 * triangles.size ());
-  for (const auto &t : triangles)
-    for (std::size_t i = 0; i < 3; ++i)
-    {
-      const auto [low, high] = std::minmax (t[i], t[(i + 1) % 3]);
-      keys.push_back (static_cast<std::uint64_t> (low) << 32 | static_cast<std::uint32_t> (high));
-    }
-  std::sort (keys.begin (), keys.end ());
-  std::vector<MeshEdge> edges;
-  for (std::size_t i = 0; i < keys.size ();)
-  {
-    std::size_t end = i + 1;
-    while (end < keys.size () && keys[end] == keys[i])
-      ++end;
-    edges.push_back (
-        {static_cast<int> (keys[i] >> 32), static_cast<int> (keys[i] & 0xffffffffu), static_cast<int> (end - i)});
-    i = end;
-  }
-  return edges;
-}
 
-std::vector<MeshEdge>
-boundaryEdges (const std::vector<std::array<int, 3>> &triangles)
+/** \brief Counts the edges of some vertices, each at its smaller vertex, and joins the pieces they connect. */
+class EdgeCounter
 {
-  std::vector<MeshEdge> edges = collectEdges (triangles);
-  edges.erase (std::remove_if (edges.begin (), edges.end (), [] (const MeshEdge &e) { return e.triangles != 1; }),
-               edges.end ());
-  return edges;
-}
+public:
+  EdgeCounter (const std::vector<std::array<int, 3>> &triangles, const SideTable &sides, ConcurrentSets &pieces)
+      : triangles_ (triangles), sides_ (sides), pieces_ (pieces)
+  {
+  }
+
+  void
+  count (std::size_t v)
+  {
+    others_.clear ();
+    for (const int *side = sides_.begin (v); side != sides_.end (v); ++side)
+      others_.push_back (otherEnd (static_cast<std::size_t> (*side), static_cast<int> (v)));
+    std::sort (others_.begin (), others_.end ());
+    for (std::size_t i = 0, end = 0; i < others_.size (); i = end)
+    {
+      while (end < others_.size () && others_[end] == others_[i])
+        ++end;
+      ++edges;
+      boundary_edges += end - i == 1 ? 1 : 0;
+      non_manifold_edges += end - i > 2 ? 1 : 0;
+      pieces_.unite (static_cast<int> (v), others_[i]);
+    }
+  }
+
+  std::size_t edges = 0, boundary_edges = 0, non_manifold_edges = 0;
+
+private:
+  int
+  otherEnd (std::size_t side, int v) const
+  {
+    const std::array<int, 3> &triangle = triangles_[side / 3];
+    const int start = triangle[side % 3];
+    return start != v ? start : triangle[(side + 1) % 3];
+  }
+
+  const std::vector<std::array<int, 3>> &triangles_;
+  const SideTable &sides_;
+  ConcurrentSets &pieces_;
+  std::vector<int> others_; // other ends of the edges of the vertex at hand
+};
+
+} // namespace
 
 MeshTopology
-measureTopology (const TriangleMesh &mesh)
+measureTopology (const TriangleMesh &mesh, int threads)
 {
+  const std::size_t vertices = mesh.vertices.size ();
+  const SideTable sides (mesh.triangles, vertices, threads);
+  ConcurrentSets pieces (vertices, threads);
   MeshTopology topology;
-  DisjointSets pieces (mesh.vertices.size ());
-  const std::vector<MeshEdge> edges = collectEdges (mesh.triangles);
-  for (const MeshEdge &edge : edges)
-  {
-    topology.boundary_edges += edge.triangles == 1 ? 1 : 0;
-    topology.non_manifold_edges += edge.triangles > 2 ? 1 : 0;
-    pieces.unite (edge.low, edge.high);
-  }
-  for (int v = 0; v < static_cast<int> (mesh.vertices.size ()); ++v)
+  std::size_t edges = 0;
+  constexpr std::size_t STRETCH = 4096;
+  parallelFor ((vertices + STRETCH - 1) / STRETCH, threads, [&] { return EdgeCounter (mesh.triangles, sides, pieces); },
+               [&] (EdgeCounter &counter, std::size_t i)
+               {
+                 for (std::size_t v = i * STRETCH; v < std::min (vertices, (i + 1) * STRETCH); ++v)
+                   counter.count (v);
+               },
+               [&] (const EdgeCounter &counter)
+               {
+                 edges += counter.edges;
+                 topology.boundary_edges += counter.boundary_edges;
+                 topology.non_manifold_edges += counter.non_manifold_edges;
+               });
+  for (int v = 0; v < static_cast<int> (vertices); ++v)
     topology.components += pieces.find (v) == v ? 1 : 0;
-  topology.euler = static_cast<long> (mesh.vertices.size ()) - static_cast<long> (edges.size ()) +
-                   static_cast<long> (mesh.triangles.size ());
+  topology.euler =
+      static_cast<long> (vertices) - static_cast<long> (edges) + static_cast<long> (mesh.triangles.size ());
   return topology;
 }
 
@@ -154,6 +179,8 @@ findSides (const TriangleMesh &mesh)
 void
 splitNormals (TriangleMesh &mesh)
 {
+  if (mesh.creases.empty ())
+    return;
   DisjointSets sides = findSides (mesh);
   std::vector<char> on_crease (mesh.vertices.size (), 0);
   for (const Crease &crease : mesh.creases)

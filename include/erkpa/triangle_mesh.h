@@ -43,9 +43,11 @@ struct MeshTopology
   long euler = 0;                     ///< vertices - edges + triangles
 };
 
-/** \brief Counts edges, borders and pieces of a mesh. */
+/** \brief Counts edges, borders and pieces of a mesh.
+ * \param[in] threads 0 = all processors
+ */
 MeshTopology
-measureTopology (const TriangleMesh &mesh);
+measureTopology (const TriangleMesh &mesh, int threads = 0);
 
 /** \brief The vertices in which more than two creases meet, sorted. */
 std::vector<int>

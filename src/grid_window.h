@@ -1,0 +1,79 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "sparse_grid.h"
+
+#include <array>
+
+namespace erkpa
+{
+
+/** \brief The blocks in and around that of a cell, each looked up once while the cells stay in one block. */
+class GridWindow
+{
+public:
+  explicit GridWindow (const SparseGrid &grid) : grid_ (grid)
+  {
+    blocks_.fill (UNKNOWN);
+  }
+
+  /** \brief Put the block of \a cell in the middle. */
+  void
+  moveTo (const GridPoint &cell)
+  {
+    const GridPoint first{cell.x & ~3, cell.y & ~3, cell.z & ~3};
+    if (first.x == first_.x && first.y == first_.y && first.z == first_.z)
+      return;
+    first_ = first;
+    blocks_.fill (UNKNOWN);
+  }
+
+  /** \brief The place of a node or cell in or next to the block in the middle; block < 0 where it does not exist. */
+  GridPlace
+  find (const GridPoint &point)
+  {
+    const int x = point.x - first_.x + 4, y = point.y - first_.y + 4, z = point.z - first_.z + 4;
+    int &block = blocks_[static_cast<std::size_t> ((x >> 2) + 3 * (y >> 2) + 9 * (z >> 2))];
+    if (block == UNKNOWN)
+      block = grid_.find (point).block;
+    return {block, (x & 3) | (y & 3) << 2 | (z & 3) << 4};
+  }
+
+  bool
+  isActive (const GridPoint &cell)
+  {
+    const GridPlace place = find (cell);
+    return place.block >= 0 && (grid_.block (place.block).active & place.bit ()) != 0;
+  }
+
+  /** \brief Values at the 8 corners of a cell of the block in the middle. */
+  std::array<double, 8>
+  cornerValues (const GridPoint &cell)
+  {
+    std::array<double, 8> values;
+    for (int corner = 0; corner < 8; ++corner)
+    {
+      const GridPlace place = find (cell + cornerOffset (corner));
+      values[static_cast<std::size_t> (corner)] =
+          grid_.block (place.block).values[static_cast<std::size_t> (place.local)];
+    }
+    return values;
+  }
+
+  /** \brief The vertex on the edge from \a node along \a axis; the edge must be cut. */
+  int
+  vertexOnEdge (const GridPoint &node, int axis)
+  {
+    const GridPlace place = find (node);
+    return SparseGrid::vertexOnEdge (grid_.block (place.block), place.local, axis);
+  }
+
+private:
+  static constexpr int UNKNOWN = -2;
+
+  const SparseGrid &grid_;
+  GridPoint first_{1, 0, 0}; // no block begins here
+  std::array<int, 27> blocks_;
+};
+
+} // namespace erkpa

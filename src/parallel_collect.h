@@ -1,0 +1,47 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "threads.h"
+
+#include <algorithm>
+#include <cstddef>
+#include <utility>
+#include <vector>
+
+namespace erkpa
+{
+
+/** \brief The elements of all parts, one part after the other; the parts are given up. */
+template <typename T>
+std::vector<T>
+joinParts (std::vector<std::vector<T>> &&parts, int threads)
+{
+  std::vector<std::size_t> firsts (parts.size () + 1, 0);
+  for (std::size_t i = 0; i < parts.size (); ++i)
+    firsts[i + 1] = firsts[i] + parts[i].size ();
+  std::vector<T> joined (firsts.back ());
+  parallelFor (
+      parts.size (), threads, [] { return 0; },
+      [&] (int, std::size_t i)
+      {
+        std::move (parts[i].begin (), parts[i].end (), joined.begin () + static_cast<std::ptrdiff_t> (firsts[i]));
+        std::vector<T> ().swap (parts[i]);
+      });
+  return joined;
+}
+
+/** \brief Joins what work (first, last, part) appends to its part for each stretch of 0 .. count - 1, in their order.
+ * \param[in] stretch items of one part
+ */
+template <typename T, typename WorkT>
+std::vector<T>
+parallelCollect (std::size_t count, int threads, WorkT work, std::size_t stretch = 16384)
+{
+  std::vector<std::vector<T>> parts ((count + stretch - 1) / stretch);
+  parallelFor (
+      parts.size (), threads, [] { return 0; },
+      [&] (int, std::size_t i) { work (i * stretch, std::min (count, (i + 1) * stretch), parts[i]); });
+  return joinParts (std::move (parts), threads);
+}
+
+} // namespace erkpa
