@@ -252,7 +252,7 @@ BlockField::copyNodes ()
   const bool has_confidences = !table_->confidences.empty ();
   for (std::size_t a = 0; a < 3; ++a)
   {
-    positions_[a].resize (node_count_);
+    positions_[a].resize (node_count_ + lanes::MAX_WIDTH);
     normals_[a].resize (node_count_);
     const std::vector<float> &from = table_->grid->coordinates (static_cast<int> (a));
     const auto center = static_cast<float> (center_[static_cast<Eigen::Index> (a)]);

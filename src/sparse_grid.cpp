@@ -71,11 +71,13 @@ SparseGrid::placeBlock (const GridPoint &first)
   const auto [entry, is_new] = index_.try_emplace (keyOf (first), blockCount ());
   if (is_new)
   {
-    GridBlock &block = blocks_.emplace_back ();
-    block.first = first;
-    block.above.fill (-1);
-    block.below.fill (-1);
-    block.above[0] = entry->second;
+    if (static_cast<std::size_t> (block_count_) == CHUNK * chunks_.size ())
+      chunks_.push_back (std::make_unique<Chunk> ());
+    GridBlock &made = block (block_count_++);
+    made.first = first;
+    made.above.fill (-1);
+    made.below.fill (-1);
+    made.above[0] = entry->second;
   }
   return entry->second;
 }
@@ -84,14 +86,14 @@ int
 SparseGrid::placeAbove (int block, int axes)
 {
   const auto i = static_cast<std::size_t> (axes);
-  const int known = blocks_[static_cast<std::size_t> (block)].above[i];
+  const int known = this->block (block).above[i];
   if (known >= 0)
     return known;
   const GridPoint offset = cornerOffset (axes), by{4 * offset.x, 4 * offset.y, 4 * offset.z};
-  const int made = placeBlock (blocks_[static_cast<std::size_t> (block)].first + by);
-  blocks_[static_cast<std::size_t> (block)].above[i] = made;
+  const int made = placeBlock (this->block (block).first + by);
+  this->block (block).above[i] = made;
   if ((axes & (axes - 1)) == 0) // one axis: the way back is known, too
-    blocks_[static_cast<std::size_t> (made)].below[i / 2] = block;
+    this->block (made).below[i / 2] = block;
   return made;
 }
 
@@ -99,13 +101,13 @@ int
 SparseGrid::placeBelow (int block, int axis)
 {
   const auto i = static_cast<std::size_t> (axis);
-  const int known = blocks_[static_cast<std::size_t> (block)].below[i];
+  const int known = this->block (block).below[i];
   if (known >= 0)
     return known;
   const GridPoint by{axis == 0 ? -4 : 0, axis == 1 ? -4 : 0, axis == 2 ? -4 : 0};
-  const int made = placeBlock (blocks_[static_cast<std::size_t> (block)].first + by);
-  blocks_[static_cast<std::size_t> (block)].below[i] = made;
-  blocks_[static_cast<std::size_t> (made)].above[std::size_t (1) << i] = block;
+  const int made = placeBlock (this->block (block).first + by);
+  this->block (block).below[i] = made;
+  this->block (made).above[std::size_t (1) << i] = block;
   return made;
 }
 
@@ -165,15 +167,16 @@ SparseGrid::markCutEdges ()
               nodes[static_cast<std::size_t> (above)];
     }
   }
-  for (GridBlock &block : blocks_)
+  for (int index = 0; index < blocks; ++index)
     for (int axis = 0; axis < 3; ++axis)
     {
+      GridBlock &block = this->block (index);
       std::uint64_t &cut = block.cut[static_cast<std::size_t> (axis)];
       std::uint64_t ends = grid_bits::down (block.inside, axis);
       if (cut & grid_bits::LAST[axis])
       {
-        const int above = placeAbove (block.above[0], 1 << axis); // is there: see above
-        ends |= grid_bits::intoBelow (blocks_[static_cast<std::size_t> (above)].inside, axis);
+        const int above = placeAbove (index, 1 << axis); // is there: see above
+        ends |= grid_bits::intoBelow (this->block (above).inside, axis);
       }
       cut &= block.inside ^ ends;
     }
@@ -183,8 +186,9 @@ int
 SparseGrid::numberVertices ()
 {
   int count = 0;
-  for (GridBlock &block : blocks_)
+  for (int index = 0; index < block_count_; ++index)
   {
+    GridBlock &block = this->block (index);
     block.first_vertex = count;
     for (const std::uint64_t bits : block.cut)
       count += countBits (bits);

@@ -5,6 +5,7 @@
 
 #include <array>
 #include <cstdint>
+#include <memory>
 #include <unordered_map>
 #include <vector>
 
@@ -126,19 +127,19 @@ public:
   GridBlock &
   block (int index)
   {
-    return blocks_[static_cast<std::size_t> (index)];
+    return (*chunks_[static_cast<std::size_t> (index) / CHUNK])[static_cast<std::size_t> (index) % CHUNK];
   }
 
   const GridBlock &
   block (int index) const
   {
-    return blocks_[static_cast<std::size_t> (index)];
+    return (*chunks_[static_cast<std::size_t> (index) / CHUNK])[static_cast<std::size_t> (index) % CHUNK];
   }
 
   int
   blockCount () const
   {
-    return static_cast<int> (blocks_.size ());
+    return block_count_;
   }
 
   /** \brief The node or cell at a place of a block. */
@@ -193,6 +194,9 @@ public:
   vertexOnEdge (const GridBlock &block, int node, int axis);
 
 private:
+  static constexpr std::size_t CHUNK = 128;
+  using Chunk = std::array<GridBlock, CHUNK>; // blocks stay where they are when others are made
+
   int
   placeBlock (const GridPoint &first);
 
@@ -207,7 +211,8 @@ private:
 
   Eigen::Vector3d origin_;
   double voxel_size_;
-  std::vector<GridBlock> blocks_;
+  int block_count_ = 0;
+  std::vector<std::unique_ptr<Chunk>> chunks_;
   std::unordered_map<std::uint64_t, int> index_;
 };
 

@@ -4,8 +4,12 @@
 #include <omp.h>
 
 #include <algorithm>
+#include <atomic>
 #include <cstddef>
 #include <exception>
+#include <mutex>
+#include <system_error>
+#include <thread>
 #include <vector>
 
 namespace erkpa
@@ -16,6 +20,49 @@ inline int
 threadCount (int threads)
 {
   return threads > 0 ? std::min (threads, 256) : omp_get_max_threads ();
+}
+
+/** \brief Runs share (thread) on several threads, the calling one among them; an exception is thrown again here.
+ *
+ * Threads of the standard library, not a team of OpenMP: such a team waits for its next work by spinning, which takes
+ * the processors from whatever else runs in the pipeline.
+ */
+template <typename ShareT>
+void
+runThreads (int thread_count, ShareT share)
+{
+  std::exception_ptr failure;
+  std::mutex failing;
+  const auto run = [&] (int thread)
+  {
+    try
+    {
+      share (thread);
+    }
+    catch (...)
+    {
+      const std::lock_guard<std::mutex> lock (failing);
+      failure = std::current_exception ();
+    }
+  };
+  std::vector<std::thread> others;
+  others.reserve (static_cast<std::size_t> (std::max (0, thread_count - 1)));
+  for (int thread = 1; thread < thread_count; ++thread)
+  {
+    try
+    {
+      others.emplace_back (run, thread);
+    }
+    catch (const std::system_error &) // no more threads to be had: those there are do the work
+    {
+      break;
+    }
+  }
+  run (0);
+  for (std::thread &other : others)
+    other.join ();
+  if (failure)
+    std::rethrow_exception (failure);
 }
 
 /** \brief Runs work (worker, i) for i = 0 .. count - 1 on several threads, with one worker per thread.
@@ -37,23 +84,15 @@ parallelFor (std::size_t count, int threads, MakeWorkerT make_worker, WorkT work
     workers.push_back (make_worker ());
 
   const std::size_t chunk =
-      std::clamp<std::size_t> (count / (4 * static_cast<std::size_t> (std::max (1, thread_count))), 1, 8);
-  std::exception_ptr failure;
-#pragma omp parallel for schedule(dynamic, chunk) num_threads(thread_count)
-  for (std::size_t i = 0; i < count; ++i)
-  {
-    try
-    {
-      work (workers[static_cast<std::size_t> (omp_get_thread_num ())], i);
-    }
-    catch (...)
-    {
-#pragma omp critical(erkpa_failure)
-      failure = std::current_exception ();
-    }
-  }
-  if (failure)
-    std::rethrow_exception (failure);
+      std::clamp<std::size_t> (count / (8 * static_cast<std::size_t> (std::max (1, thread_count))), 1, 64);
+  std::atomic<std::size_t> next{0};
+  runThreads (thread_count,
+              [&] (int thread)
+              {
+                for (std::size_t first = next.fetch_add (chunk); first < count; first = next.fetch_add (chunk))
+                  for (std::size_t i = first; i < std::min (count, first + chunk); ++i)
+                    work (workers[static_cast<std::size_t> (thread)], i);
+              });
   for (auto &worker : workers)
     finish (worker);
 }

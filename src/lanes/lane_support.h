@@ -93,18 +93,62 @@ public:
   }
 
 private:
-  /** \brief Lists the nodes that lie within the bounds of any lane, with their distances. */
+  /** \brief Lists the nodes that may lie within the bounds of some lane, with their distances.
+   *
+   * Those within a ball around all of them: for once the lanes are nodes, for there are many more of these.
+   */
   void
-  listWithin (B bound)
+  listWithin ()
   {
+    float middle[3], reach = 0.0f;
+    findBall (middle, reach);
+    const B limit (reach * reach);
     listed_ = 0;
-    for (std::size_t i = 0; i < nodes_.on_surface; ++i)
+    for (std::size_t first = 0; first < nodes_.on_surface; first += WIDTH)
+    {
+      const B dx = B::load_unaligned (nodes_.x + first) - B (middle[0]);
+      const B dy = B::load_unaligned (nodes_.y + first) - B (middle[1]);
+      const B dz = B::load_unaligned (nodes_.z + first) - B (middle[2]);
+      float margins[WIDTH];
+      (limit - xsimd::fma (dz, dz, xsimd::fma (dy, dy, dx * dx))).store_unaligned (margins);
+      const std::size_t last = nodes_.on_surface - first < WIDTH ? nodes_.on_surface - first : WIDTH;
+      for (std::size_t i = 0; i < last; ++i)
+      {
+        list_[listed_] = static_cast<std::uint32_t> (first + i);
+        listed_ += margins[i] >= 0.0f ? 1 : 0;
+      }
+    }
+    for (std::size_t i = 0; i < listed_; ++i)
     {
       B d[3];
-      const B squared = offset (i, d);
-      squared.store_unaligned (rows_ + WIDTH * listed_);
-      list_[listed_] = static_cast<std::uint32_t> (i);
-      listed_ += xsimd::any (squared <= bound) ? 1 : 0;
+      offset (list_[i], d).store_unaligned (rows_ + WIDTH * i);
+    }
+  }
+
+  /** \brief A ball that holds those around the points with the bounds as radii. */
+  void
+  findBall (float *middle, float &reach) const
+  {
+    float points[3][WIDTH], bounds[WIDTH];
+    radius_.store_unaligned (bounds);
+    for (int a = 0; a < 3; ++a)
+    {
+      x_[a].store_unaligned (points[a]);
+      float low = points[a][0], high = low;
+      for (std::size_t i = 1; i < WIDTH; ++i)
+      {
+        low = points[a][i] < low ? points[a][i] : low;
+        high = points[a][i] > high ? points[a][i] : high;
+      }
+      middle[a] = 0.5f * (low + high);
+    }
+    for (std::size_t i = 0; i < WIDTH; ++i)
+    {
+      float squared = 0.0f;
+      for (int a = 0; a < 3; ++a)
+        squared += (points[a][i] - middle[a]) * (points[a][i] - middle[a]);
+      const float needed = (bounds[i] + __builtin_sqrtf (squared)) * (1.0f + 1e-5f);
+      reach = needed > reach ? needed : reach;
     }
   }
 
@@ -133,7 +177,7 @@ private:
   {
     constexpr int STEPS = 10, EVEN = 5;
     B low (0.0f), high = radius_ * radius_ * B (1.0f + 1e-5f);
-    listWithin (high);
+    listWithin ();
     B in_low (0.0f), in_high = countWithin (high);
     B middle = xsimd::min (guess * guess, high);
     const B k (k_);

@@ -57,7 +57,8 @@ struct Settings
   int min_nodes;     ///< fewer nodes in the support leave f undefined
 };
 
-/** \brief The gathered value points, in an order that does not depend on what they were gathered for. */
+/** \brief The gathered value points, in an order that does not depend on what they were gathered for; positions must be
+ * readable up to a multiple of MAX_WIDTH. */
 struct Nodes
 {
   std::size_t count;
