@@ -9,7 +9,8 @@ repo=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
 preset=${1:-release}
 
 "$repo/src/cmake/apt_install.sh" g++ make cmake pkg-config \
-  libpcl-dev libeigen3-dev libboost-program-options-dev nlohmann-json3-dev libxsimd-dev libgtest-dev libcgal-demo
+  libpcl-dev libeigen3-dev libboost-program-options-dev nlohmann-json3-dev libxsimd-dev libgtest-dev \
+  libbenchmark-dev libcgal-demo
 
 # Point sets the tests read: those of Debian's CGAL, and the project's own where they are at hand.
 cgal_data="$repo/build/cgal"

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
 // Repeats Table 1 of the paper: as many points, triangles and nodes per evaluation as there, on this machine.
+#include "machine.h"
 #include "paper_run.h"
 
 #include "tool_error.h"
@@ -11,7 +12,6 @@
 #include <charconv>
 #include <cstdio>
 #include <filesystem>
-#include <fstream>
 #include <stdexcept>
 #include <string>
 #include <vector>
@@ -99,17 +99,6 @@ parseArguments (const std::vector<std::string> &words)
   return arguments;
 }
 
-std::string
-processorName ()
-{
-  std::ifstream info ("/proc/cpuinfo");
-  std::string line;
-  while (std::getline (info, line))
-    if (line.rfind ("model name", 0) == 0)
-      return line.substr (std::min (line.size (), line.find (':') + 2));
-  return "processor unknown";
-}
-
 void
 printHead (const Arguments &arguments)
 {
@@ -117,7 +106,7 @@ printHead (const Arguments &arguments)
   std::printf ("Table 1 of the paper, repeated with %s\n",
                is_papers ? "the paper's method: functional constraints, linear, its kernel, constant support radius"
                          : "the library's method: values and normals, spherical; constant support radius");
-  std::printf ("here:  %s, %d threads\n", processorName ().c_str (),
+  std::printf ("here:  %s, %d threads\n", bench::processorName ().c_str (),
                arguments.threads > 0 ? arguments.threads : omp_get_max_threads ());
   std::printf ("paper: Pentium 4, 2.4 GHz, 512 MB, one thread; its figures stand in parentheses\n");
   std::printf ("Support radius and voxel are chosen so that nodes per evaluation and triangles are the paper's.\n");
