@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "edge_judge.h"
 
-#include <Eigen/Geometry>
-
 #include <algorithm>
 #include <cmath>
 
@@ -38,14 +36,6 @@ isSteady (double before, double after)
 }
 
 } // namespace
-
-TriangleShape::TriangleShape (const Vector3d &a, const Vector3d &b, const Vector3d &c) : area ((b - a).cross (c - a))
-{
-  const double ab = (b - a).squaredNorm (), bc = (c - b).squaredNorm (), ca = (a - c).squaredNorm ();
-  shortest = std::min ({ab, bc, ca});
-  const double others = std::max ({std::min (ab, bc), std::min (bc, ca), std::min (ca, ab)}) * std::max ({ab, bc, ca});
-  sine = shortest > 0.0 ? area.norm () / std::sqrt (others) : 0.0;
-}
 
 EdgeJudge::EdgeJudge (double voxel, const std::vector<VertexPair> &creases, const SurfaceVertices &vertices,
                       HalfEdges &edges)

@@ -4,6 +4,10 @@
 #include "feature_loops.h"
 #include "half_edges.h"
 
+#include <Eigen/Geometry>
+
+#include <algorithm>
+#include <cmath>
 #include <vector>
 
 namespace erkpa
@@ -16,7 +20,15 @@ struct TriangleShape
   double sine;     ///< of its smallest angle
   double shortest; ///< squared length of its shortest side
 
-  TriangleShape (const Eigen::Vector3d &a, const Eigen::Vector3d &b, const Eigen::Vector3d &c);
+  TriangleShape (const Eigen::Vector3d &a, const Eigen::Vector3d &b, const Eigen::Vector3d &c)
+      : area ((b - a).cross (c - a))
+  {
+    const double ab = (b - a).squaredNorm (), bc = (c - b).squaredNorm (), ca = (a - c).squaredNorm ();
+    const double longest = std::max (ab, std::max (bc, ca)),
+                 middle = std::max (std::min (ab, bc), std::min (std::max (ab, bc), ca));
+    shortest = std::min (ab, std::min (bc, ca));
+    sine = shortest > 0.0 ? std::sqrt (area.squaredNorm () / (middle * longest)) : 0.0;
+  }
 };
 
 /** \brief Judges what the collapse or the flip of an edge would do to the surface and its creases.

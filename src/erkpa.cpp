@@ -6,9 +6,13 @@
 #include <pcl/common/io.h>
 
 #include <algorithm>
+#include <array>
 #include <cstdint>
 #include <cstring>
+#include <exception>
 #include <limits>
+#include <memory>
+#include <new>
 #include <string>
 #include <vector>
 
@@ -82,6 +86,27 @@ surfaceModelOf (pcl::SacModel model, SurfaceModel &surface)
   }
 }
 
+Outcome
+outcomeOfException ()
+{
+  try
+  {
+    throw;
+  }
+  catch (const std::bad_alloc &)
+  {
+    return {Status::INTERNAL_ERROR, "out of memory: use a larger voxel size or fewer points"};
+  }
+  catch (const std::exception &error)
+  {
+    return {Status::INTERNAL_ERROR, error.what ()};
+  }
+  catch (...)
+  {
+    return {Status::INTERNAL_ERROR, "a function given by the caller threw something that is no std::exception"};
+  }
+}
+
 void
 reportPoints (const std::string &class_name, const Report &report, const Options &options)
 {
@@ -122,7 +147,7 @@ namespace
 /** \brief What a call at run time fills in; no mesh is made where there is none to fill. */
 struct Result
 {
-  pcl::PolygonMesh *mesh;
+  TriangleMesh *mesh;
   ImplicitField::ConstPtr *field;
   Report *report;
 };
@@ -148,77 +173,162 @@ checkLayout (const pcl::PCLPointCloud2 &cloud)
   return {};
 }
 
-template <typename PointT>
-Outcome
-runAs (const pcl::PCLPointCloud2 &input, const Options &options, const ProgressCallback &progress, const Result &result)
-{
-  const bool is_empty = input.data.empty ();
-  const CloudBytes bytes{input.fields,   input.data.data (),         input.point_step,
-                         input.row_step, is_empty ? 0 : input.width, is_empty ? 0 : input.height};
-  std::vector<float> radii, confidences;
-  Outcome outcome = checkLayout (input);
-  if (outcome.ok ())
-    outcome = readField (bytes, options.points.radius_field, radii);
-  if (outcome.ok ())
-    outcome = readField (bytes, options.points.confidence_field, confidences);
-  if (!outcome.ok ())
-  {
-    PCL_ERROR ("[erkpa::reconstruct] %s.\n", outcome.message.c_str ());
-    return outcome;
-  }
-  const typename pcl::PointCloud<PointT>::Ptr cloud (new pcl::PointCloud<PointT>);
-  if (!is_empty) // PCL's conversion is undefined without points
-    pcl::fromPCLPointCloud2 (input, *cloud);
-  Options typed = options;
-  typed.points = PointOptions (); // PointT does not have these fields
-  ERKPA<PointT> erkpa;
-  erkpa.setOptions (typed);
-  erkpa.setRadii (radii);
-  erkpa.setConfidences (confidences);
-  erkpa.setProgressCallback (progress);
-  erkpa.setInputCloud (cloud);
-  if (result.mesh != nullptr)
-    erkpa.reconstruct (*result.mesh);
-  else
-    erkpa.computeField ();
-  *result.report = erkpa.getReport ();
-  if (result.field != nullptr)
-    *result.field = erkpa.getField ();
-  return {erkpa.getStatus (), erkpa.getStatusMessage ()};
-}
-
 bool
 hasField (const pcl::PCLPointCloud2 &cloud, const std::string &name)
 {
   return pcl::getFieldIndex (cloud, name) >= 0;
 }
 
+Attributes
+attributesOf (const pcl::PCLPointCloud2 &cloud)
+{
+  if (hasField (cloud, "rgb") || hasField (cloud, "rgba"))
+    return Attributes::COLOR;
+  return hasField (cloud, "intensity") ? Attributes::INTENSITY : Attributes::NONE;
+}
+
+/** \brief Where three floats of the first point follow each other; null where the cloud does not have them so. */
+const float *
+findTriple (const pcl::PCLPointCloud2 &cloud, const std::array<const char *, 3> &names)
+{
+  const std::uint8_t *first = nullptr;
+  for (std::size_t i = 0; i < 3; ++i)
+  {
+    const int index = pcl::getFieldIndex (cloud, names[i]);
+    if (index < 0 || cloud.fields[static_cast<std::size_t> (index)].datatype != pcl::PCLPointField::FLOAT32)
+      return nullptr;
+    const std::uint8_t *at = cloud.data.data () + cloud.fields[static_cast<std::size_t> (index)].offset;
+    first = i == 0 ? at : first;
+    if (at != first + i * sizeof (float))
+      return nullptr;
+  }
+  return reinterpret_cast<std::uintptr_t> (first) % alignof (float) == 0 ? reinterpret_cast<const float *> (first)
+                                                                         : nullptr;
+}
+
+/** \brief Look at the cloud where it lies; false where its memory is not as it would have to be. */
+bool
+viewInPlace (const pcl::PCLPointCloud2 &cloud, PointView &view)
+{
+  const bool has_normals = hasField (cloud, "normal_x");
+  if (cloud.data.empty () || attributesOf (cloud) != Attributes::NONE || cloud.point_step % alignof (float) != 0 ||
+      (cloud.height > 1 && cloud.row_step != std::size_t (cloud.width) * cloud.point_step))
+    return false;
+  view.size = std::size_t (cloud.width) * cloud.height;
+  view.stride = cloud.point_step;
+  view.position = findTriple (cloud, {"x", "y", "z"});
+  view.normal = findTriple (cloud, {"normal_x", "normal_y", "normal_z"});
+  return view.position != nullptr && (view.normal != nullptr || !has_normals);
+}
+
+/** \brief The points that a view looks at, where they are not looked at in place. */
+using Holder = std::shared_ptr<void>;
+
+template <typename PointT>
+Holder
+viewAs (const pcl::PCLPointCloud2 &input, PointView &view)
+{
+  const auto cloud = std::make_shared<pcl::PointCloud<PointT>> ();
+  if (!input.data.empty ()) // PCL's conversion is undefined without points
+    pcl::fromPCLPointCloud2 (input, *cloud);
+  view = viewCloud (*cloud);
+  return cloud;
+}
+
 /** \brief As the point type that holds most of what the cloud has. */
+Holder
+viewTyped (const pcl::PCLPointCloud2 &cloud, PointView &view)
+{
+  const bool normals = hasField (cloud, "normal_x");
+  switch (attributesOf (cloud))
+  {
+    case Attributes::COLOR:
+      return normals ? viewAs<pcl::PointXYZRGBNormal> (cloud, view) : viewAs<pcl::PointXYZRGB> (cloud, view);
+    case Attributes::INTENSITY:
+      return normals ? viewAs<pcl::PointXYZINormal> (cloud, view) : viewAs<pcl::PointXYZI> (cloud, view);
+    case Attributes::NONE:
+      break;
+  }
+  return normals ? viewAs<pcl::PointNormal> (cloud, view) : viewAs<pcl::PointXYZ> (cloud, view);
+}
+
+Outcome
+runUnguarded (const pcl::PCLPointCloud2 &input, const Options &options, const ProgressCallback &progress,
+              const Result &result)
+{
+  Outcome outcome = checkLayout (input);
+  if (!outcome.ok ())
+    return outcome;
+  const bool is_empty = input.data.empty ();
+  const CloudBytes bytes{input.fields,   input.data.data (),         input.point_step,
+                         input.row_step, is_empty ? 0 : input.width, is_empty ? 0 : input.height};
+  double share = 1.0; // of the field
+  if (result.mesh != nullptr)
+    share = options.field.interpolation == Interpolation::COLLOCATION ? 0.5 : 0.0; // else it takes no time
+  ImplicitField::ConstPtr field;
+  {
+    PointView view;
+    const Holder points = viewInPlace (input, view) ? nullptr : viewTyped (input, view);
+    outcome = readField (bytes, options.points.radius_field, view.radii);
+    if (outcome.ok ())
+      outcome = readField (bytes, options.points.confidence_field, view.confidences);
+    if (outcome.ok ())
+      outcome = buildField (view, options, {}, field, *result.report, partOf (progress, 0.0, share));
+  }
+  if (!outcome.ok ())
+    return outcome;
+  reportPoints ("erkpa", *result.report, options);
+  if (result.mesh != nullptr)
+    outcome = buildMesh (*field, options, *result.mesh, *result.report, partOf (progress, share, 1.0 - share));
+  if (outcome.ok () && result.mesh != nullptr)
+    reportRounding ("erkpa", *field, *result.report);
+  if (outcome.ok () && result.field != nullptr)
+    *result.field = field;
+  return outcome;
+}
+
 Outcome
 run (const pcl::PCLPointCloud2 &cloud, const Options &options, const ProgressCallback &progress, const Result &result)
 {
-  const bool normals = hasField (cloud, "normal_x");
-  if (hasField (cloud, "rgb") || hasField (cloud, "rgba"))
-    return normals ? runAs<pcl::PointXYZRGBNormal> (cloud, options, progress, result)
-                   : runAs<pcl::PointXYZRGB> (cloud, options, progress, result);
-  if (hasField (cloud, "intensity"))
-    return normals ? runAs<pcl::PointXYZINormal> (cloud, options, progress, result)
-                   : runAs<pcl::PointXYZI> (cloud, options, progress, result);
-  return normals ? runAs<pcl::PointNormal> (cloud, options, progress, result)
-                 : runAs<pcl::PointXYZ> (cloud, options, progress, result);
+  Outcome outcome;
+  try
+  {
+    outcome = runUnguarded (cloud, options, progress, result);
+  }
+  catch (...)
+  {
+    outcome = outcomeOfException ();
+  }
+  if (!outcome.ok ())
+    PCL_ERROR ("[erkpa::reconstruct] %s.\n", outcome.message.c_str ());
+  return outcome;
 }
 
 } // namespace
+
+Outcome
+reconstruct (const pcl::PCLPointCloud2 &cloud, const Options &options, TriangleMesh &mesh, Report &report,
+             ImplicitField::ConstPtr *field, const ProgressCallback &progress)
+{
+  mesh.clear ();
+  report = Report ();
+  if (field != nullptr)
+    field->reset ();
+  const Outcome outcome = run (cloud, options, progress, {&mesh, field, &report});
+  if (!outcome.ok ())
+    mesh.clear ();
+  return outcome;
+}
 
 Outcome
 reconstruct (const pcl::PCLPointCloud2 &cloud, const Options &options, pcl::PolygonMesh &mesh, Report &report,
              ImplicitField::ConstPtr *field, const ProgressCallback &progress)
 {
   mesh = pcl::PolygonMesh ();
-  report = Report ();
-  if (field != nullptr)
-    field->reset ();
-  return run (cloud, options, progress, {&mesh, field, &report});
+  TriangleMesh triangles;
+  const Outcome outcome = reconstruct (cloud, options, triangles, report, field, progress);
+  toPolygonMesh (triangles, attributesOf (cloud), cloud.header, mesh);
+  return outcome;
 }
 
 Outcome

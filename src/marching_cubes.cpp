@@ -20,6 +20,7 @@
 #include <algorithm>
 #include <atomic>
 #include <cmath>
+#include <cstdint>
 #include <string>
 #include <utility>
 
@@ -234,6 +235,9 @@ polygonize (const ImplicitField &field, const PolygonizerOptions &options, Trian
     return noSurface (field, voxel, report.dropped_components);
   splitFans (cell_mesh.border, options.threads, triangles, vertices);
   fillNormals (triangles, options.threads, vertices);
+  vertices.border_offsets = std::vector<double> (); // has done its work, as have the next two
+  vertices.faces = std::vector<int> ();
+  vertices.side_keys = std::vector<std::uint64_t> ();
   removeSlivers (voxel, creases, triangles, vertices, options.threads);
   std::vector<Crease> lines = traceCreases (field, options, creases, triangles, vertices);
   mesh = toInputFrame (field.points (), options.threads, vertices, triangles, std::move (lines));

@@ -1,13 +1,15 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <erkpa/oriented_points.h>
 
+#include "parallel_collect.h"
+#include "repeated_points.h"
 #include "text.h"
 
 #include <Eigen/SVD>
 
 #include <algorithm>
+#include <atomic>
 #include <cmath>
-#include <cstring>
 #include <numeric>
 #include <string>
 #include <utility>
@@ -51,47 +53,49 @@ chosenPoints (const PointView &view, std::vector<int> &chosen)
 /** \brief Drops the chosen points for which \a is_bad; returns how many. */
 template <typename TestT>
 std::size_t
-dropIf (std::vector<int> &chosen, TestT is_bad)
+dropIf (std::vector<int> &chosen, int threads, TestT is_bad)
 {
-  const auto end = std::remove_if (chosen.begin (), chosen.end (), is_bad);
-  const auto count = static_cast<std::size_t> (chosen.end () - end);
-  chosen.erase (end, chosen.end ());
+  std::vector<int> kept = parallelCollect<int> (chosen.size (), threads,
+                                                [&] (std::size_t first, std::size_t last, std::vector<int> &part)
+                                                {
+                                                  part.reserve (last - first);
+                                                  for (std::size_t rank = first; rank < last; ++rank)
+                                                    if (!is_bad (chosen[rank]))
+                                                      part.push_back (chosen[rank]);
+                                                });
+  const std::size_t count = chosen.size () - kept.size ();
+  chosen.swap (kept);
   return count;
+}
+
+Eigen::Vector3f
+positionOf (const PointView &view, int index)
+{
+  return Eigen::Map<const Eigen::Vector3f> (at (view, view.position, index));
 }
 
 /** \brief Of points with equal coordinates drops all but the first; returns how many. */
 std::size_t
-dropRepeated (const PointView &view, std::vector<int> &chosen)
+dropRepeated (const PointView &view, int threads, std::vector<int> &chosen)
 {
-  struct Place
+  std::vector<Eigen::Vector3f> positions (chosen.size ());
+  parallelRanges (chosen.size (), threads,
+                  [&] (std::size_t first, std::size_t last)
+                  {
+                    for (std::size_t rank = first; rank < last; ++rank)
+                      positions[rank] = positionOf (view, chosen[rank]);
+                  });
+  const std::vector<int> repeated = findRepeated (positions, threads);
+  for (std::size_t i = 0; i < repeated.size (); ++i)
   {
-    float x, y, z;
-    int rank; // in chosen
-  };
-  std::vector<Place> places (chosen.size ());
-  for (std::size_t rank = 0; rank < chosen.size (); ++rank)
-  {
-    const float *p = at (view, view.position, chosen[rank]);
-    places[rank] = {p[0] + 0.0f, p[1] + 0.0f, p[2] + 0.0f, static_cast<int> (rank)}; // -0 becomes 0
+    const auto first = static_cast<std::ptrdiff_t> (repeated[i]) + 1;
+    const auto last = static_cast<std::ptrdiff_t> (i + 1 < repeated.size () ? static_cast<std::size_t> (repeated[i + 1])
+                                                                            : chosen.size ());
+    std::copy (chosen.begin () + first, chosen.begin () + last,
+               chosen.begin () + first - static_cast<std::ptrdiff_t> (i) - 1);
   }
-  const auto before = [] (const Place &a, const Place &b) {
-    return a.x != b.x ? a.x < b.x : a.y != b.y ? a.y < b.y : a.z != b.z ? a.z < b.z : a.rank < b.rank;
-  };
-  std::sort (places.begin (), places.end (), before);
-  std::vector<char> repeated (chosen.size (), 0);
-  std::size_t count = 0;
-  for (std::size_t i = 1; i < places.size (); ++i)
-    if (places[i].x == places[i - 1].x && places[i].y == places[i - 1].y && places[i].z == places[i - 1].z)
-    {
-      repeated[static_cast<std::size_t> (places[i].rank)] = 1;
-      ++count;
-    }
-  std::size_t kept = 0;
-  for (std::size_t rank = 0; rank < chosen.size (); ++rank)
-    if (!repeated[rank])
-      chosen[kept++] = chosen[rank];
-  chosen.resize (kept);
-  return count;
+  chosen.resize (chosen.size () - repeated.size ());
+  return repeated.size ();
 }
 
 /** \brief Whether what the view gives per point is given for all points. */
@@ -139,16 +143,32 @@ checkShapes (const PointView &view, const std::vector<int> &chosen)
 }
 
 Eigen::Vector3d
-middleOf (const PointView &view, const std::vector<int> &chosen)
+middleOf (const PointView &view, int threads, const std::vector<int> &chosen)
 {
-  Eigen::Array3d low = Eigen::Array3d::Constant (HUGE_VAL), high = -low;
-  for (const int i : chosen)
+  struct Box
   {
-    const Eigen::Array3d p = Eigen::Map<const Eigen::Array3f> (at (view, view.position, i)).cast<double> ();
-    low = low.min (p);
-    high = high.max (p);
-  }
-  return chosen.empty () ? Eigen::Vector3d (Eigen::Vector3d::Zero ()) : Eigen::Vector3d (0.5 * (low + high));
+    Eigen::Array3f low = Eigen::Array3f::Constant (HUGE_VALF), high = -low;
+  };
+  if (chosen.empty ())
+    return Eigen::Vector3d::Zero ();
+  constexpr std::size_t STRETCH = 16384;
+  Box box;
+  parallelFor ((chosen.size () + STRETCH - 1) / STRETCH, threads, [] { return Box (); },
+               [&] (Box &part, std::size_t s)
+               {
+                 for (std::size_t rank = s * STRETCH; rank < std::min (chosen.size (), (s + 1) * STRETCH); ++rank)
+                 {
+                   const Eigen::Array3f p = positionOf (view, chosen[rank]);
+                   part.low = part.low.min (p);
+                   part.high = part.high.max (p);
+                 }
+               },
+               [&box] (const Box &part)
+               {
+                 box.low = box.low.min (part.low);
+                 box.high = box.high.max (part.high);
+               });
+  return 0.5 * (box.low.cast<double> () + box.high.cast<double> ());
 }
 
 /** \brief The unit normal of a point, or zero where it has none. */
@@ -162,28 +182,54 @@ normalOf (const PointView &view, int index)
   return length > 1e-12 ? Eigen::Vector3f ((n / length).cast<float> ()) : Eigen::Vector3f (Eigen::Vector3f::Zero ());
 }
 
-/** \brief Appends point \a i of the cloud. */
-void
-append (const PointView &view, int i, OrientedPoints &points)
+/** \brief The values that all points have of one kind, \a count per point, for the chosen ones. */
+template <typename T>
+std::vector<T>
+choose (const std::vector<T> &values, std::size_t count, const std::vector<int> &chosen)
 {
-  const Eigen::Vector3d p = Eigen::Map<const Eigen::Vector3f> (at (view, view.position, i)).cast<double> ();
-  points.positions.emplace_back ((p - points.origin).cast<float> ());
-  points.normals.push_back (normalOf (view, i));
-  const auto index = static_cast<std::size_t> (i), channels = static_cast<std::size_t> (view.channels);
-  for (std::size_t c = 0; c < channels; ++c)
-    points.attributes.push_back (view.attributes[index * channels + c]);
-  if (!view.confidences.empty ())
-    points.confidences.push_back (view.confidences[index]);
-  if (!view.radii.empty ())
-    points.radii.push_back (view.radii[index]);
-  if (!view.shapes.empty ())
-    points.shapes.push_back (view.shapes[index]);
+  std::vector<T> result;
+  if (values.empty ())
+    return result;
+  result.reserve (count * chosen.size ());
+  for (const int i : chosen)
+  {
+    const auto first = values.begin () + static_cast<std::ptrdiff_t> (count) * i;
+    result.insert (result.end (), first, first + static_cast<std::ptrdiff_t> (count));
+  }
+  return result;
+}
+
+/** \brief Fill in the chosen points; returns how many have no normal. */
+std::size_t
+fillIn (const PointView &view, int threads, const std::vector<int> &chosen, OrientedPoints &points)
+{
+  points.positions.resize (chosen.size ());
+  points.normals.resize (chosen.size ());
+  std::atomic<std::size_t> without_normal{0};
+  parallelRanges (chosen.size (), threads,
+                  [&] (std::size_t first, std::size_t last)
+                  {
+                    std::size_t without = 0;
+                    for (std::size_t i = first; i < last; ++i)
+                    {
+                      const Eigen::Vector3d p = positionOf (view, chosen[i]).cast<double> ();
+                      points.positions[i] = (p - points.origin).cast<float> ();
+                      points.normals[i] = normalOf (view, chosen[i]);
+                      without += points.normals[i].isZero (0.0f) ? 1 : 0;
+                    }
+                    without_normal += without;
+                  });
+  points.attributes = choose (view.attributes, static_cast<std::size_t> (view.channels), chosen);
+  points.confidences = choose (view.confidences, 1, chosen);
+  points.radii = choose (view.radii, 1, chosen);
+  points.shapes = choose (view.shapes, 1, chosen);
+  return without_normal;
 }
 
 } // namespace
 
 Outcome
-collectPoints (const PointView &view, OrientedPoints &points, PointCounts &counts)
+collectPoints (const PointView &view, OrientedPoints &points, PointCounts &counts, int threads)
 {
   points = OrientedPoints ();
   counts = PointCounts ();
@@ -194,15 +240,15 @@ collectPoints (const PointView &view, OrientedPoints &points, PointCounts &count
   if (!outcome.ok ())
     return outcome;
   counts.read = chosen.size ();
-  counts.not_finite = dropIf (chosen, [&] (int i) { return !isFinite (at (view, view.position, i)); });
+  counts.not_finite = dropIf (chosen, threads, [&] (int i) { return !isFinite (at (view, view.position, i)); });
   if (!view.confidences.empty ())
-    counts.no_confidence = dropIf (chosen,
+    counts.no_confidence = dropIf (chosen, threads,
                                    [&] (int i)
                                    {
                                      const float confidence = view.confidences[static_cast<std::size_t> (i)];
                                      return !(confidence > 0.0f) || !std::isfinite (confidence);
                                    });
-  counts.duplicate = dropRepeated (view, chosen);
+  counts.duplicate = dropRepeated (view, threads, chosen);
   outcome = checkRadii (view, chosen);
   if (outcome.ok ())
     outcome = checkShapes (view, chosen);
@@ -210,15 +256,9 @@ collectPoints (const PointView &view, OrientedPoints &points, PointCounts &count
     return outcome;
   counts.used = chosen.size ();
 
-  points.origin = middleOf (view, chosen);
+  points.origin = middleOf (view, threads, chosen);
   points.channels = view.channels;
-  points.positions.reserve (chosen.size ());
-  points.normals.reserve (chosen.size ());
-  points.attributes.reserve (chosen.size () * static_cast<std::size_t> (view.channels));
-  for (const int i : chosen)
-    append (view, i, points);
-  for (const Eigen::Vector3f &normal : points.normals)
-    counts.without_normal += normal.isZero (0.0f) ? 1 : 0;
+  counts.without_normal = fillIn (view, threads, chosen, points);
   return {};
 }
 

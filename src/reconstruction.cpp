@@ -39,11 +39,11 @@ private:
 };
 
 Outcome
-collect (const PointView &view, const SearchFactory &make_search, OrientedPoints &points,
+collect (const PointView &view, const SearchFactory &make_search, int threads, OrientedPoints &points,
          NeighborSearch::ConstPtr &search, Report &report)
 {
   const StageClock clock (report.seconds_points);
-  Outcome outcome = collectPoints (view, points, report.points);
+  Outcome outcome = collectPoints (view, points, report.points, threads);
   if (!outcome.ok ())
     return outcome;
   if (points.size () <= Support::MIN_NODES)
@@ -179,7 +179,7 @@ buildField (const PointView &view, const Options &options, const SearchFactory &
     return outcome;
   const auto points = std::make_shared<OrientedPoints> ();
   NeighborSearch::ConstPtr search;
-  outcome = collect (view, make_search, *points, search, report);
+  outcome = collect (view, make_search, options.polygonizer.threads, *points, search, report);
   if (!outcome.ok ())
     return outcome;
   if (report.points.without_normal > 0)

@@ -443,6 +443,46 @@ TEST (Erkpa, ReconstructsACloudWhoseFieldsAreKnownAtRunTime)
   EXPECT_EQ (report.triangles, mesh.polygons.size ());
 }
 
+TEST (Erkpa, GivesTheLibrarysOwnMeshOfACloudWhoseFieldsAreKnownAtRunTime)
+{
+  pcl::PCLPointCloud2 cloud;
+  pcl::toPCLPointCloud2 (*shapes::cloud<pcl::PointNormal> (shapes::sphere (2000)), cloud);
+  pcl::PolygonMesh mesh;
+  erkpa::TriangleMesh triangles;
+  erkpa::Report report;
+  ASSERT_TRUE (erkpa::reconstruct (cloud, {}, mesh, report).ok ());
+  ASSERT_TRUE (erkpa::reconstruct (cloud, {}, triangles, report).ok ());
+  ASSERT_EQ (triangles.triangles.size (), mesh.polygons.size ());
+  EXPECT_EQ (triangles.vertices.size (), mesh.cloud.width);
+  for (std::size_t t = 0; t < mesh.polygons.size (); ++t)
+    ASSERT_TRUE (std::equal (triangles.triangles[t].begin (), triangles.triangles[t].end (),
+                             mesh.polygons[t].vertices.begin ()));
+}
+
+TEST (Erkpa, KeepsTheFirstOfManyPointsThatRepeatEachOther)
+{
+  constexpr int COUNT = 100000;
+  std::vector<Eigen::Vector3f> positions;
+  for (int i = 0; i < COUNT; ++i) // the second half repeats the first, with the other zero
+    positions.emplace_back (static_cast<float> (i % (COUNT / 2)), static_cast<float> (i % 7),
+                            i < COUNT / 2 ? 0.0f : -0.0f);
+  for (int i = COUNT / 2; i < COUNT; ++i)
+    positions[static_cast<std::size_t> (i)].y () = static_cast<float> ((i - COUNT / 2) % 7);
+  erkpa::PointView view;
+  view.size = positions.size ();
+  view.stride = sizeof (Eigen::Vector3f);
+  view.position = positions.front ().data ();
+  erkpa::OrientedPoints one, many;
+  erkpa::PointCounts counts;
+  ASSERT_TRUE (erkpa::collectPoints (view, one, counts, 1).ok ());
+  EXPECT_EQ (counts.duplicate, std::size_t (COUNT / 2));
+  ASSERT_EQ (one.size (), std::size_t (COUNT / 2));
+  for (std::size_t i = 0; i < one.size (); ++i)
+    ASSERT_EQ (one.positions[i], (positions[i].cast<double> () - one.origin).cast<float> ());
+  ASSERT_TRUE (erkpa::collectPoints (view, many, counts, 4).ok ());
+  EXPECT_EQ (one.positions, many.positions);
+}
+
 TEST (Erkpa, RefusesAnEmptyCloudWhoseFieldsAreKnownAtRunTime)
 {
   pcl::PolygonMesh mesh = usedMesh ();

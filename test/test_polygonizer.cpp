@@ -66,6 +66,21 @@ TEST (CellLoops, UseEachCrossingOnceInEverySignPattern)
   }
 }
 
+TEST (MeshTopology, CountsEdgesPiecesAndBorders)
+{
+  erkpa::TriangleMesh mesh;
+  mesh.vertices.resize (8, Eigen::Vector3f::Zero ());
+  mesh.triangles = {{0, 1, 2}, {1, 0, 3}, {0, 1, 4}, {7, 6, 5}}; // three at one edge, and one alone
+  for (const int threads : {1, 3})
+  {
+    const erkpa::MeshTopology topology = erkpa::measureTopology (mesh, threads);
+    EXPECT_EQ (topology.boundary_edges, 9u);
+    EXPECT_EQ (topology.non_manifold_edges, 1u);
+    EXPECT_EQ (topology.components, 2u);
+    EXPECT_EQ (topology.euler, 8 - 10 + 4);
+  }
+}
+
 TEST (CellLoops, RunCounterClockwiseSeenFromOutside)
 {
   std::array<double, 8> values;

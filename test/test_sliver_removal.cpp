@@ -292,6 +292,18 @@ TEST (SliverRemoval, LeavesATorusATorusOfTheSameVolume)
   EXPECT_LT (largestTurn (patch, outside), 20.0) << "a fold";
 }
 
+TEST (SliverRemoval, DoesNotDependOnTheNumberOfThreads)
+{
+  for (const bool has_creases : {false, true})
+  {
+    Patch one = has_creases ? cube () : torus (), many = one;
+    erkpa::removeSlivers (VOXEL, one.creases, one.triangles, one.vertices, 1);
+    erkpa::removeSlivers (VOXEL, many.creases, many.triangles, many.vertices, 5);
+    EXPECT_EQ (one.triangles, many.triangles);
+    EXPECT_EQ (one.creases, many.creases);
+  }
+}
+
 TEST (SliverRemoval, ThinsOutTheNeedlesAroundTheTipOfAFan)
 {
   Patch patch = sphere ();

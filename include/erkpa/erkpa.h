@@ -223,6 +223,13 @@ Outcome
 reconstruct (const pcl::PCLPointCloud2 &cloud, const Options &options, pcl::PolygonMesh &mesh, Report &report,
              ImplicitField::ConstPtr *field = nullptr, const ProgressCallback &progress = {});
 
+/** \brief The same with the mesh as the library has it, which takes less memory and time than PCL's.
+ * \param[out] mesh in the frame of the cloud; channels is 3 for colour, 1 for intensity
+ */
+Outcome
+reconstruct (const pcl::PCLPointCloud2 &cloud, const Options &options, TriangleMesh &mesh, Report &report,
+             ImplicitField::ConstPtr *field = nullptr, const ProgressCallback &progress = {});
+
 /** \brief The same without a mesh: only the field, null on failure. */
 Outcome
 computeField (const pcl::PCLPointCloud2 &cloud, const Options &options, ImplicitField::ConstPtr &field, Report &report,

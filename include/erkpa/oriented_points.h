@@ -70,8 +70,9 @@ struct PointCounts
  * given for each, radii must be positive, and shapes must keep their rule (else Status::INVALID_SETTING)
  * \param[out] points the nodes, in the order of the cloud
  * \param[out] counts what was kept and what was dropped
+ * \param[in] threads 0 = all processors; the nodes do not depend on it
  */
 Outcome
-collectPoints (const PointView &view, OrientedPoints &points, PointCounts &counts);
+collectPoints (const PointView &view, OrientedPoints &points, PointCounts &counts, int threads = 0);
 
 } // namespace erkpa

@@ -5,12 +5,15 @@
 #include "point_fields.h"
 #include "tool_error.h"
 
+#include <fcntl.h>
+#include <sys/mman.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
 #include <algorithm>
 #include <array>
 #include <cerrno>
-#include <cstdio>
 #include <cstring>
-#include <filesystem>
 #include <memory>
 
 namespace erkpa::tool
@@ -29,46 +32,88 @@ constexpr std::array<Format<Reader>, 7> READERS = {{{".pcd", readPcd},
                                                     {".obj", readObj},
                                                     {".off", readOff}}};
 
-/** \brief The content of a file. */
-struct FileBytes
+[[noreturn]] void
+failToRead (const std::string &path)
 {
-  std::unique_ptr<char[]> bytes; ///< not a string: that would write zeros first
-  std::size_t size = 0;
-  std::size_t capacity = 0;
-
-  void
-  grow (std::size_t new_capacity)
-  {
-    std::unique_ptr<char[]> larger (new char[new_capacity]);
-    std::copy_n (bytes.get (), size, larger.get ());
-    bytes.swap (larger);
-    capacity = new_capacity;
-  }
-};
-
-FileBytes
-readFile (const std::string &path)
-{
-  const auto fail = [&path] ()
-  { throw ToolError ("cannot read " + path + ": " + std::strerror (errno) + "; check the name and its permissions"); };
-  const std::unique_ptr<std::FILE, int (*) (std::FILE *)> file (std::fopen (path.c_str (), "rb"), std::fclose);
-  if (!file)
-    fail ();
-  std::error_code is_no_file; // a pipe, perhaps: its size is not known
-  const std::uintmax_t size = std::filesystem::file_size (path, is_no_file);
-  FileBytes result;
-  result.grow (is_no_file ? (1u << 16) : static_cast<std::size_t> (size) + 1);
-  while (const std::size_t got =
-             std::fread (result.bytes.get () + result.size, 1, result.capacity - result.size, file.get ()))
-  {
-    result.size += got;
-    if (result.size == result.capacity)
-      result.grow (2 * result.capacity);
-  }
-  if (std::ferror (file.get ()) != 0)
-    fail ();
-  return result;
+  throw ToolError ("cannot read " + path + ": " + std::strerror (errno) + "; check the name and its permissions");
 }
+
+/** \brief The content of a file, in place where it can be mapped. */
+class FileBytes
+{
+public:
+  explicit FileBytes (const std::string &path)
+  {
+    const int descriptor = ::open (path.c_str (), O_RDONLY | O_CLOEXEC);
+    if (descriptor < 0)
+      failToRead (path);
+    const bool done = map (descriptor) || read (descriptor);
+    const int error = errno;
+    ::close (descriptor);
+    errno = error;
+    if (!done)
+      failToRead (path);
+  }
+
+  ~FileBytes ()
+  {
+    if (mapped_ != nullptr)
+      munmap (mapped_, size_);
+  }
+
+  FileBytes (const FileBytes &) = delete;
+  FileBytes &
+  operator= (const FileBytes &) = delete;
+
+  std::string_view
+  view () const
+  {
+    return {mapped_ != nullptr ? static_cast<const char *> (mapped_) : bytes_.get (), size_};
+  }
+
+private:
+  bool
+  map (int descriptor)
+  {
+    struct stat status = {};
+    if (fstat (descriptor, &status) != 0 || !S_ISREG (status.st_mode) || status.st_size <= 0)
+      return false;
+    const auto size = static_cast<std::size_t> (status.st_size);
+    void *const mapped = mmap (nullptr, size, PROT_READ, MAP_PRIVATE, descriptor, 0);
+    if (mapped == MAP_FAILED)
+      return false;
+    madvise (mapped, size, MADV_SEQUENTIAL);
+    mapped_ = mapped;
+    size_ = size;
+    return true;
+  }
+
+  /** \brief Of a pipe, say, whose size is not known. */
+  bool
+  read (int descriptor)
+  {
+    for (std::size_t capacity = 0;;)
+    {
+      if (size_ == capacity)
+      {
+        capacity = std::max<std::size_t> (1u << 16, 2 * capacity);
+        std::unique_ptr<char[]> larger (new char[capacity]); // not a string: that would write zeros first
+        std::copy_n (bytes_.get (), size_, larger.get ());
+        bytes_.swap (larger);
+      }
+      const ssize_t got = ::read (descriptor, bytes_.get () + size_, capacity - size_);
+      if (got == 0)
+        return true;
+      if (got < 0 && errno != EINTR)
+        return false;
+      size_ += got > 0 ? static_cast<std::size_t> (got) : 0;
+    }
+  }
+
+  void *mapped_ = nullptr;
+  std::unique_ptr<char[]> bytes_;
+  std::size_t size_ = 0;
+};
 
 } // namespace
 
@@ -90,8 +135,8 @@ readCloud (const std::string &path)
   const Reader *reader = findFormat (READERS, path);
   if (reader == nullptr)
     throw ToolError ("cannot read " + path + ": the format is unknown; use one of " + readableFormats ());
-  FileBytes file = readFile (path);
-  RawCloud result = (*reader) (std::string_view (file.bytes.get (), file.size), path);
+  const FileBytes file (path);
+  RawCloud result = (*reader) (file.view (), path);
   for (const char *name : {"x", "y", "z"})
     if (!FieldReader (result.cloud, {name}).exists ())
       throw ToolError (path + ": the points have no field " + name + "; export them with x, y and z");

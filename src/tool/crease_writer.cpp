@@ -2,7 +2,6 @@
 #include "crease_writer.h"
 
 #include "file_format.h"
-#include "point_fields.h"
 
 #include <Eigen/Core>
 
@@ -22,18 +21,16 @@ struct Lines
 };
 
 Lines
-gatherLines (const pcl::PolygonMesh &mesh, const std::vector<Crease> &creases)
+gatherLines (const TriangleMesh &mesh, const std::vector<Crease> &creases)
 {
-  const FieldReader x (mesh.cloud, {"x"}), y (mesh.cloud, {"y"}), z (mesh.cloud, {"z"});
   Lines result{{}, creases};
   std::map<int, int> numbers;
   for (Crease &line : result.lines)
     for (int &vertex : line.vertices)
     {
       const auto [entry, is_new] = numbers.try_emplace (vertex, static_cast<int> (result.points.size ()));
-      const auto v = static_cast<std::size_t> (vertex);
       if (is_new)
-        result.points.emplace_back (Eigen::Vector3d (x (v), y (v), z (v)).cast<float> ());
+        result.points.push_back (mesh.vertices[static_cast<std::size_t> (vertex)]);
       vertex = entry->second;
     }
   return result;
@@ -110,8 +107,7 @@ constexpr std::array<Format<Writer>, 2> WRITERS = {{{".vtk", writeVtk}, {".ply",
 } // namespace
 
 void
-writeCreases (const pcl::PolygonMesh &mesh, const std::vector<Crease> &creases, const std::string &path,
-              OutputFile &file)
+writeCreases (const TriangleMesh &mesh, const std::vector<Crease> &creases, const std::string &path, OutputFile &file)
 {
   (*findFormat (WRITERS, path)) (gatherLines (mesh, creases), file);
   file.close ();
@@ -130,7 +126,7 @@ writableCreaseFormats ()
 }
 
 double
-lengthOf (const pcl::PolygonMesh &mesh, const std::vector<Crease> &creases)
+lengthOf (const TriangleMesh &mesh, const std::vector<Crease> &creases)
 {
   const Lines lines = gatherLines (mesh, creases);
   const auto at = [&lines] (int point)

@@ -5,8 +5,6 @@
 
 #include <erkpa/triangle_mesh.h>
 
-#include <pcl/PolygonMesh.h>
-
 #include <string>
 #include <vector>
 
@@ -21,8 +19,7 @@ namespace erkpa::tool
  * \param[in] creases lines over the vertices of \a mesh
  */
 void
-writeCreases (const pcl::PolygonMesh &mesh, const std::vector<Crease> &creases, const std::string &path,
-              OutputFile &file);
+writeCreases (const TriangleMesh &mesh, const std::vector<Crease> &creases, const std::string &path, OutputFile &file);
 
 /** \brief Whether writeCreases knows the format. */
 bool
@@ -34,6 +31,6 @@ writableCreaseFormats ();
 
 /** \brief How long the creases of a mesh are, all together. */
 double
-lengthOf (const pcl::PolygonMesh &mesh, const std::vector<Crease> &creases);
+lengthOf (const TriangleMesh &mesh, const std::vector<Crease> &creases);
 
 } // namespace erkpa::tool

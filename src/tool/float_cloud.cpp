@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "float_cloud.h"
 
+#include "../threads.h"
 #include "point_fields.h"
 #include "tool_error.h"
 
@@ -141,8 +142,25 @@ positionsOf (const pcl::PCLPointCloud2 &cloud)
   return positions;
 }
 
+namespace
+{
+
+/** \brief Whether the fields of the cloud lie as those of the result already, but for their names. */
+bool
+hasLayoutOf (const pcl::PCLPointCloud2 &result, const std::vector<FieldReader> &numbers,
+             const pcl::PCLPointCloud2 &cloud)
+{
+  bool is_same = cloud.point_step == result.point_step && cloud.fields.size () == result.fields.size () &&
+                 numbers.size () == result.fields.size ();
+  for (std::size_t n = 0; n < numbers.size () && is_same; ++n)
+    is_same = numbers[n].datatype () == Field::FLOAT32 && numbers[n].offset () == result.fields[n].offset;
+  return is_same;
+}
+
+} // namespace
+
 pcl::PCLPointCloud2
-toFloatFields (const pcl::PCLPointCloud2 &cloud, const std::vector<std::string> &others)
+toFloatFields (pcl::PCLPointCloud2 cloud, const std::vector<std::string> &others)
 {
   pcl::PCLPointCloud2 result;
   const std::vector<FieldReader> numbers = takeNumbers (cloud, others, result);
@@ -152,10 +170,15 @@ toFloatFields (const pcl::PCLPointCloud2 &cloud, const std::vector<std::string> 
   result.width = cloud.width;
   result.height = cloud.height;
   result.row_step = result.width * result.point_step;
-  result.data.resize (sizeOf (cloud) * result.point_step);
-  std::uint8_t *to = result.data.data ();
-  for (std::size_t i = 0; i < sizeOf (cloud); ++i, to += result.point_step)
+  if (hasLayoutOf (result, numbers, cloud))
   {
+    result.data.swap (cloud.data);
+    return result;
+  }
+  result.data.resize (sizeOf (cloud) * result.point_step);
+  const auto convert = [&] (std::size_t i)
+  {
+    std::uint8_t *const to = result.data.data () + i * result.point_step;
     for (std::size_t n = 0; n < numbers.size (); ++n)
     {
       const auto value = static_cast<float> (numbers[n](i));
@@ -166,7 +189,13 @@ toFloatFields (const pcl::PCLPointCloud2 &cloud, const std::vector<std::string> 
       const std::uint32_t value = colour (i);
       std::memcpy (to + numbers.size () * sizeof (value), &value, sizeof (value));
     }
-  }
+  };
+  parallelRanges (sizeOf (cloud), 0,
+                  [&] (std::size_t first, std::size_t last)
+                  {
+                    for (std::size_t i = first; i < last; ++i)
+                      convert (i);
+                  });
   return result;
 }
 

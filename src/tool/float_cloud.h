@@ -19,7 +19,7 @@ positionsOf (const pcl::PCLPointCloud2 &cloud);
  * \param[in] others more fields to keep, by name; throws a ToolError where the cloud lacks one
  */
 pcl::PCLPointCloud2
-toFloatFields (const pcl::PCLPointCloud2 &cloud, const std::vector<std::string> &others);
+toFloatFields (pcl::PCLPointCloud2 cloud, const std::vector<std::string> &others);
 
 /** \brief The largest error that storing the coordinates as float makes; 0 where they are float anyway. */
 double

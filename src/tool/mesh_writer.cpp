@@ -1,13 +1,18 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "mesh_writer.h"
 
+#include "../threads.h"
 #include "file_format.h"
-#include "point_fields.h"
 
 #include <Eigen/Geometry>
 #include <boost/endian/conversion.hpp>
 
+#include <algorithm>
+#include <charconv>
+#include <cstdint>
 #include <cstring>
+#include <string_view>
+#include <vector>
 
 namespace erkpa::tool
 {
@@ -15,223 +20,294 @@ namespace erkpa::tool
 namespace
 {
 
-/** \brief The vertices of a mesh by what they have. */
-struct Vertices
+/** \brief Part of a file while it is put together. */
+class Bytes
 {
-  explicit Vertices (const pcl::PCLPointCloud2 &cloud)
-      : size (static_cast<std::size_t> (cloud.width) * cloud.height), position{FieldReader (cloud, {"x"}),
-                                                                               FieldReader (cloud, {"y"}),
-                                                                               FieldReader (cloud, {"z"})},
-        normal{FieldReader (cloud, {"normal_x"}), FieldReader (cloud, {"normal_y"}), FieldReader (cloud, {"normal_z"})},
-        colour (cloud, {"rgb", "rgba"}), intensity (cloud, {"intensity"})
+public:
+  template <typename T>
+  void
+  putLittle (T value)
   {
+    value = boost::endian::native_to_little (value);
+    put (&value, sizeof (value));
+  }
+
+  void
+  putLittle (float value)
+  {
+    putLittle (bitsOf (value));
+  }
+
+  void
+  putBig (std::uint32_t value)
+  {
+    value = boost::endian::native_to_big (value);
+    put (&value, sizeof (value));
+  }
+
+  void
+  putBig (float value)
+  {
+    putBig (bitsOf (value));
+  }
+
+  /** \brief A number in the fewest digits that give the same again. */
+  template <typename T>
+  void
+  putText (T value)
+  {
+    char text[64];
+    put (text, static_cast<std::size_t> (std::to_chars (text, text + sizeof (text), value).ptr - text));
+  }
+
+  void
+  put (std::string_view text)
+  {
+    put (text.data (), text.size ());
+  }
+
+  void
+  put (const void *bytes, std::size_t size)
+  {
+    const auto *begin = static_cast<const char *> (bytes);
+    bytes_.insert (bytes_.end (), begin, begin + size);
+  }
+
+  const std::vector<char> &
+  bytes () const
+  {
+    return bytes_;
+  }
+
+  void
+  clear ()
+  {
+    bytes_.clear ();
+  }
+
+private:
+  static std::uint32_t
+  bitsOf (float value)
+  {
+    std::uint32_t bits = 0;
+    std::memcpy (&bits, &value, sizeof (bits));
+    return bits;
+  }
+
+  std::vector<char> bytes_;
+};
+
+/** \brief What a mesh is written from and to. */
+struct Job
+{
+  const TriangleMesh &mesh;
+  int threads;
+  OutputFile &file;
+
+  bool
+  hasColours () const
+  {
+    return mesh.channels == 3;
   }
 
   bool
-  hasNormals () const
+  hasIntensities () const
   {
-    return normal[0].exists () && normal[1].exists () && normal[2].exists ();
+    return mesh.channels == 1;
   }
 
-  Eigen::Vector3f
-  positionOf (std::size_t vertex) const
+  /** \brief Write what put (bytes, i) appends for i = 0 .. count - 1: several stretches are made at once, then written.
+   */
+  template <typename PutT>
+  void
+  writeAll (std::size_t count, PutT put) const
   {
-    return Eigen::Vector3d (position[0](vertex), position[1](vertex), position[2](vertex)).cast<float> ();
+    constexpr std::size_t STRETCH = 16384;
+    std::vector<Bytes> parts (2 * static_cast<std::size_t> (threadCount (threads)));
+    for (std::size_t first = 0; first < count; first += parts.size () * STRETCH)
+    {
+      parallelFor (
+          parts.size (), threads, [] { return 0; },
+          [&] (int, std::size_t p)
+          {
+            parts[p].clear ();
+            const std::size_t begin = first + p * STRETCH, end = std::min (count, begin + STRETCH);
+            for (std::size_t i = begin; i < end; ++i)
+              put (parts[p], i);
+          });
+      for (const Bytes &part : parts)
+        file.write (part.bytes ().data (), part.bytes ().size ());
+    }
   }
-
-  std::size_t size;
-  FieldReader position[3], normal[3], colour, intensity;
 };
 
-template <typename T>
 void
-putLittle (OutputFile &file, T value)
+putColour (const TriangleMesh &mesh, std::size_t vertex, Bytes &bytes)
 {
-  value = boost::endian::native_to_little (value);
-  file.write (&value, sizeof (value));
-}
-
-void
-putBig (OutputFile &file, std::uint32_t value)
-{
-  value = boost::endian::native_to_big (value);
-  file.write (&value, sizeof (value));
-}
-
-std::uint32_t
-bitsOf (double value)
-{
-  const auto single = static_cast<float> (value);
-  std::uint32_t bits = 0;
-  std::memcpy (&bits, &single, sizeof (bits));
-  return bits;
-}
-
-void
-putColour (OutputFile &file, std::uint32_t rgb)
-{
-  const std::uint8_t bytes[3] = {static_cast<std::uint8_t> (rgb >> 16), static_cast<std::uint8_t> (rgb >> 8),
-                                 static_cast<std::uint8_t> (rgb)};
-  file.write (bytes, sizeof (bytes));
-}
-
-void
-writePlyHeader (const Vertices &vertices, std::size_t faces, OutputFile &file)
-{
-  file.write ("ply\nformat binary_little_endian 1.0\nelement vertex ");
-  file.writeNumber (vertices.size);
-  file.write ("\nproperty float x\nproperty float y\nproperty float z\n");
-  if (vertices.hasNormals ())
-    file.write ("property float nx\nproperty float ny\nproperty float nz\n");
-  if (vertices.colour.exists ())
-    file.write ("property uchar red\nproperty uchar green\nproperty uchar blue\n");
-  if (vertices.intensity.exists ())
-    file.write ("property float intensity\n");
-  file.write ("element face ");
-  file.writeNumber (faces);
-  file.write ("\nproperty list uchar int vertex_indices\nend_header\n");
-}
-
-void
-writePly (const pcl::PolygonMesh &mesh, OutputFile &file)
-{
-  const Vertices vertices (mesh.cloud);
-  writePlyHeader (vertices, mesh.polygons.size (), file);
-  for (std::size_t i = 0; i < vertices.size; ++i)
+  for (std::size_t c = 0; c < 3; ++c)
   {
-    for (const FieldReader &coordinate : vertices.position)
-      putLittle (file, bitsOf (coordinate (i)));
-    for (std::size_t a = 0; a < 3 && vertices.hasNormals (); ++a)
-      putLittle (file, bitsOf (vertices.normal[a](i)));
-    if (vertices.colour.exists ())
-      putColour (file, vertices.colour.bits (i));
-    if (vertices.intensity.exists ())
-      putLittle (file, bitsOf (vertices.intensity (i)));
+    const float value = mesh.attributes[3 * vertex + c];
+    bytes.putLittle (static_cast<std::uint8_t> (value < 0.0f ? 0.0f : value > 255.0f ? 255.0f : value + 0.5f));
   }
-  for (const pcl::Vertices &polygon : mesh.polygons)
-  {
-    putLittle (file, static_cast<std::uint8_t> (polygon.vertices.size ()));
-    for (const auto vertex : polygon.vertices)
-      putLittle (file, static_cast<std::uint32_t> (vertex));
-  }
+}
+
+void
+writePlyHeader (const Job &job)
+{
+  job.file.write ("ply\nformat binary_little_endian 1.0\nelement vertex ");
+  job.file.writeNumber (job.mesh.vertices.size ());
+  job.file.write ("\nproperty float x\nproperty float y\nproperty float z\n"
+                  "property float nx\nproperty float ny\nproperty float nz\n");
+  if (job.hasColours ())
+    job.file.write ("property uchar red\nproperty uchar green\nproperty uchar blue\n");
+  if (job.hasIntensities ())
+    job.file.write ("property float intensity\n");
+  job.file.write ("element face ");
+  job.file.writeNumber (job.mesh.triangles.size ());
+  job.file.write ("\nproperty list uchar int vertex_indices\nend_header\n");
+}
+
+void
+writePly (const Job &job)
+{
+  const TriangleMesh &mesh = job.mesh;
+  writePlyHeader (job);
+  job.writeAll (mesh.vertices.size (),
+                [&] (Bytes &bytes, std::size_t i)
+                {
+                  for (const Eigen::Vector3f *vector : {&mesh.vertices[i], &mesh.normals[i]})
+                    for (int axis = 0; axis < 3; ++axis)
+                      bytes.putLittle ((*vector)[axis]);
+                  if (job.hasColours ())
+                    putColour (mesh, i, bytes);
+                  if (job.hasIntensities ())
+                    bytes.putLittle (mesh.attributes[i]);
+                });
+  job.writeAll (mesh.triangles.size (),
+                [&] (Bytes &bytes, std::size_t t)
+                {
+                  bytes.putLittle (std::uint8_t (3));
+                  for (const int vertex : mesh.triangles[t])
+                    bytes.putLittle (static_cast<std::uint32_t> (vertex));
+                });
 }
 
 /** \brief The point data of a VTK file. */
 void
-writeVtkAttributes (const Vertices &vertices, OutputFile &file)
+writeVtkAttributes (const Job &job)
 {
-  file.write ("\nPOINT_DATA ");
-  file.writeNumber (vertices.size);
-  if (vertices.colour.exists ())
+  const TriangleMesh &mesh = job.mesh;
+  const std::size_t count = mesh.vertices.size ();
+  job.file.write ("\nPOINT_DATA ");
+  job.file.writeNumber (count);
+  if (job.hasColours ())
   {
-    file.write ("\nCOLOR_SCALARS Colors 3\n"); // the name PCL's loader looks for
-    for (std::size_t i = 0; i < vertices.size; ++i)
-      putColour (file, vertices.colour.bits (i));
+    job.file.write ("\nCOLOR_SCALARS Colors 3\n"); // the name PCL's loader looks for
+    job.writeAll (count, [&] (Bytes &bytes, std::size_t i) { putColour (mesh, i, bytes); });
   }
-  if (vertices.intensity.exists ())
+  if (job.hasIntensities ())
   {
-    file.write ("\nSCALARS intensity float 1\nLOOKUP_TABLE default\n");
-    for (std::size_t i = 0; i < vertices.size; ++i)
-      putBig (file, bitsOf (vertices.intensity (i)));
+    job.file.write ("\nSCALARS intensity float 1\nLOOKUP_TABLE default\n");
+    job.writeAll (count, [&] (Bytes &bytes, std::size_t i) { bytes.putBig (mesh.attributes[i]); });
   }
-  if (vertices.hasNormals ())
-  {
-    file.write ("\nNORMALS normals float\n");
-    for (std::size_t i = 0; i < vertices.size; ++i)
-      for (const FieldReader &coordinate : vertices.normal)
-        putBig (file, bitsOf (coordinate (i)));
-  }
-  file.write ("\n");
+  job.file.write ("\nNORMALS normals float\n");
+  job.writeAll (count,
+                [&] (Bytes &bytes, std::size_t i)
+                {
+                  for (int axis = 0; axis < 3; ++axis)
+                    bytes.putBig (mesh.normals[i][axis]);
+                });
+  job.file.write ("\n");
 }
 
 void
-writeVtk (const pcl::PolygonMesh &mesh, OutputFile &file)
+writeVtk (const Job &job)
 {
-  const Vertices vertices (mesh.cloud);
-  file.write ("# vtk DataFile Version 3.0\nmesh\nBINARY\nDATASET POLYDATA\nPOINTS ");
-  file.writeNumber (vertices.size);
-  file.write (" float\n");
-  for (std::size_t i = 0; i < vertices.size; ++i)
-    for (const FieldReader &coordinate : vertices.position)
-      putBig (file, bitsOf (coordinate (i)));
-
-  std::size_t numbers = 0;
-  for (const pcl::Vertices &polygon : mesh.polygons)
-    numbers += polygon.vertices.size () + 1;
-  file.write ("\nPOLYGONS ");
-  file.writeNumber (mesh.polygons.size ());
-  file.write (" ");
-  file.writeNumber (numbers);
-  file.write ("\n");
-  for (const pcl::Vertices &polygon : mesh.polygons)
-  {
-    putBig (file, static_cast<std::uint32_t> (polygon.vertices.size ()));
-    for (const auto vertex : polygon.vertices)
-      putBig (file, static_cast<std::uint32_t> (vertex));
-  }
-  writeVtkAttributes (vertices, file);
+  const TriangleMesh &mesh = job.mesh;
+  job.file.write ("# vtk DataFile Version 3.0\nmesh\nBINARY\nDATASET POLYDATA\nPOINTS ");
+  job.file.writeNumber (mesh.vertices.size ());
+  job.file.write (" float\n");
+  job.writeAll (mesh.vertices.size (),
+                [&] (Bytes &bytes, std::size_t i)
+                {
+                  for (int axis = 0; axis < 3; ++axis)
+                    bytes.putBig (mesh.vertices[i][axis]);
+                });
+  job.file.write ("\nPOLYGONS ");
+  job.file.writeNumber (mesh.triangles.size ());
+  job.file.write (" ");
+  job.file.writeNumber (4 * mesh.triangles.size ());
+  job.file.write ("\n");
+  job.writeAll (mesh.triangles.size (),
+                [&] (Bytes &bytes, std::size_t t)
+                {
+                  bytes.putBig (std::uint32_t (3));
+                  for (const int vertex : mesh.triangles[t])
+                    bytes.putBig (static_cast<std::uint32_t> (vertex));
+                });
+  writeVtkAttributes (job);
 }
 
 void
-writeStl (const pcl::PolygonMesh &mesh, OutputFile &file)
+writeStl (const Job &job)
 {
-  const Vertices vertices (mesh.cloud);
+  const TriangleMesh &mesh = job.mesh;
   std::string header = "binary STL"; // not "solid": that begins a text file
   header.resize (80, ' ');
-  file.write (header);
-  putLittle (file, static_cast<std::uint32_t> (mesh.polygons.size ()));
-  for (const pcl::Vertices &polygon : mesh.polygons)
-  {
-    Eigen::Vector3f corners[3];
-    for (std::size_t c = 0; c < 3; ++c)
-      corners[c] = vertices.positionOf (polygon.vertices[c]);
-    const Eigen::Vector3f normal = (corners[1] - corners[0]).cross (corners[2] - corners[0]).normalized ();
-    for (const Eigen::Vector3f &vector : {normal, corners[0], corners[1], corners[2]})
-      for (const float coordinate : {vector.x (), vector.y (), vector.z ()})
-        putLittle (file, bitsOf (coordinate));
-    putLittle (file, std::uint16_t (0));
-  }
+  job.file.write (header);
+  Bytes count;
+  count.putLittle (static_cast<std::uint32_t> (mesh.triangles.size ()));
+  job.file.write (count.bytes ().data (), count.bytes ().size ());
+  job.writeAll (mesh.triangles.size (),
+                [&] (Bytes &bytes, std::size_t t)
+                {
+                  const auto corner = [&] (std::size_t c) -> const Eigen::Vector3f &
+                  { return mesh.vertices[static_cast<std::size_t> (mesh.triangles[t][c])]; };
+                  const Eigen::Vector3f normal =
+                      (corner (1) - corner (0)).cross (corner (2) - corner (0)).normalized ();
+                  for (const Eigen::Vector3f *vector : {&normal, &corner (0), &corner (1), &corner (2)})
+                    for (int axis = 0; axis < 3; ++axis)
+                      bytes.putLittle ((*vector)[axis]);
+                  bytes.putLittle (std::uint16_t (0));
+                });
 }
 
 /** \brief A line of three numbers. */
 void
-writeObjLine (OutputFile &file, const char *keyword, const FieldReader (&fields)[3], std::size_t vertex)
+putObjLine (std::string_view keyword, const Eigen::Vector3f &vector, Bytes &bytes)
 {
-  file.write (keyword);
-  for (const FieldReader &coordinate : fields)
+  bytes.put (keyword);
+  for (int axis = 0; axis < 3; ++axis)
   {
-    file.write (" ");
-    file.writeNumber (static_cast<float> (coordinate (vertex)));
+    bytes.put (" ");
+    bytes.putText (vector[axis]);
   }
-  file.write ("\n");
+  bytes.put ("\n");
 }
 
 void
-writeObj (const pcl::PolygonMesh &mesh, OutputFile &file)
+writeObj (const Job &job)
 {
-  const Vertices vertices (mesh.cloud);
-  for (std::size_t i = 0; i < vertices.size; ++i)
-    writeObjLine (file, "v", vertices.position, i);
-  for (std::size_t i = 0; i < vertices.size && vertices.hasNormals (); ++i)
-    writeObjLine (file, "vn", vertices.normal, i);
-  for (const pcl::Vertices &polygon : mesh.polygons)
-  {
-    file.write ("f");
-    for (const auto vertex : polygon.vertices)
-    {
-      const auto number = static_cast<std::size_t> (vertex) + 1;
-      file.write (" ");
-      file.writeNumber (number);
-      if (!vertices.hasNormals ())
-        continue;
-      file.write ("//");
-      file.writeNumber (number);
-    }
-    file.write ("\n");
-  }
+  const TriangleMesh &mesh = job.mesh;
+  job.writeAll (mesh.vertices.size (),
+                [&] (Bytes &bytes, std::size_t i) { putObjLine ("v", mesh.vertices[i], bytes); });
+  job.writeAll (mesh.normals.size (), [&] (Bytes &bytes, std::size_t i) { putObjLine ("vn", mesh.normals[i], bytes); });
+  job.writeAll (mesh.triangles.size (),
+                [&] (Bytes &bytes, std::size_t t)
+                {
+                  bytes.put ("f");
+                  for (const int vertex : mesh.triangles[t])
+                  {
+                    bytes.put (" ");
+                    bytes.putText (vertex + 1);
+                    bytes.put ("//");
+                    bytes.putText (vertex + 1);
+                  }
+                  bytes.put ("\n");
+                });
 }
 
-using Writer = void (*) (const pcl::PolygonMesh &mesh, OutputFile &file);
+using Writer = void (*) (const Job &job);
 
 constexpr std::array<Format<Writer>, 4> WRITERS = {
     {{".ply", writePly}, {".vtk", writeVtk}, {".stl", writeStl}, {".obj", writeObj}}};
@@ -251,9 +327,9 @@ writableFormats ()
 }
 
 void
-writeMesh (const pcl::PolygonMesh &mesh, const std::string &path, OutputFile &file)
+writeMesh (const TriangleMesh &mesh, const std::string &path, int threads, OutputFile &file)
 {
-  (*findFormat (WRITERS, path)) (mesh, file);
+  (*findFormat (WRITERS, path)) ({mesh, threads, file});
   file.close ();
 }
 

@@ -3,7 +3,7 @@
 
 #include "output_file.h"
 
-#include <pcl/PolygonMesh.h>
+#include <erkpa/triangle_mesh.h>
 
 #include <string>
 
@@ -15,10 +15,11 @@ namespace erkpa::tool
  *
  * PCL's own writers are not used: on a full disk all but .stl report success, .vtk and .obj keep five digits
  * (in UTM coordinates: metres), .vtk has no normals, and they live in pcl_io, which loads VTK before main.
- * \param[in] mesh triangles over FLOAT32 x y z, and normal_x/y/z, rgb, intensity where there are
+ * \param[in] mesh with colours where it has three channels, with intensities where it has one
+ * \param[in] threads that bring it into the form of the file; 0 = all processors
  */
 void
-writeMesh (const pcl::PolygonMesh &mesh, const std::string &path, OutputFile &file);
+writeMesh (const TriangleMesh &mesh, const std::string &path, int threads, OutputFile &file);
 
 /** \brief Whether writeMesh knows the format. */
 bool

@@ -103,10 +103,13 @@ OutputFile::~OutputFile ()
 void
 OutputFile::write (const void *bytes, std::size_t size)
 {
+  const auto *begin = static_cast<const char *> (bytes);
   if (buffer_.size () + size > BUFFER_SIZE)
     flush ();
-  const auto *begin = static_cast<const char *> (bytes);
-  buffer_.insert (buffer_.end (), begin, begin + size);
+  if (size > BUFFER_SIZE)
+    writeThrough (begin, size);
+  else
+    buffer_.insert (buffer_.end (), begin, begin + size);
 }
 
 void
@@ -135,14 +138,20 @@ OutputFile::writeNumber (std::size_t value)
 void
 OutputFile::flush ()
 {
-  for (std::size_t done = 0; done < buffer_.size ();)
+  writeThrough (buffer_.data (), buffer_.size ());
+  buffer_.clear ();
+}
+
+void
+OutputFile::writeThrough (const char *bytes, std::size_t size)
+{
+  for (std::size_t done = 0; done < size;)
   {
-    const ssize_t written = ::write (descriptor_, buffer_.data () + done, buffer_.size () - done);
+    const ssize_t written = ::write (descriptor_, bytes + done, size - done);
     if (written < 0 && errno != EINTR)
       fail (errno);
     done += written > 0 ? static_cast<std::size_t> (written) : 0;
   }
-  buffer_.clear ();
 }
 
 void

@@ -59,6 +59,9 @@ private:
   void
   flush ();
 
+  void
+  writeThrough (const char *bytes, std::size_t size);
+
   [[noreturn]] void
   fail (int error) const;
 

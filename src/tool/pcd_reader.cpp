@@ -178,7 +178,8 @@ readPcd (std::string_view bytes, const std::string &path)
   else if (header.data == "binary")
   {
     requireBytes (points * cloud.point_step, body, path);
-    cloud.data.assign (body.begin (), body.begin () + static_cast<std::ptrdiff_t> (points * cloud.point_step));
+    const auto *first = reinterpret_cast<const std::uint8_t *> (body.data ());
+    cloud.data.assign (first, first + points * cloud.point_step);
   }
   else if (header.data == "binary_compressed")
     readCompressed (body, path, points, cloud);

@@ -123,7 +123,8 @@ private:
     if (rest_.size () < needed)
       throw ToolError (path_ + ": the file ends early, " + std::to_string (needed - rest_.size ()) +
                        " bytes are missing; write or copy it again");
-    cloud.data.assign (rest_.begin (), rest_.begin () + static_cast<std::ptrdiff_t> (needed));
+    const auto *bytes = reinterpret_cast<const std::uint8_t *> (rest_.data ()); // copied as a whole, not one by one
+    cloud.data.assign (bytes, bytes + needed);
     rest_.remove_prefix (needed);
     for (std::size_t i = 0; is_swapped_ && i < cloud.width; ++i)
       swapBytes (cloud, cloud.data.data () + i * cloud.point_step);

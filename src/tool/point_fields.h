@@ -62,6 +62,12 @@ public:
     return datatype_;
   }
 
+  std::size_t
+  offset () const
+  {
+    return offset_;
+  }
+
   double
   operator() (std::size_t point) const;
 

@@ -15,6 +15,7 @@
 #include <erkpa/sharp_surface_io.h>
 
 #include <memory>
+#include <utility>
 
 namespace erkpa::tool
 {
@@ -65,8 +66,7 @@ public:
          {&line_.output, &line_.values, &line_.report, &line_.saved_sharp_edges, &line_.creases})
       if (!path->empty ()) // better now than after the work
         OutputFile::check (*path);
-    const pcl::PCLPointCloud2 cloud = load ();
-    reconstruct (cloud);
+    reconstruct (load ());
     writeFiles ();
   }
 
@@ -77,10 +77,10 @@ private:
     if (!line_.query.empty ())
       queries_ = positionsOf (readCloud (line_.query).cloud);
     Step step ("Loading", line_.input);
-    const RawCloud raw = readCloud (line_.input);
+    RawCloud raw = readCloud (line_.input);
     const PointOptions &points = line_.options.points;
-    pcl::PCLPointCloud2 cloud = toFloatFields (raw.cloud, {points.radius_field, points.confidence_field});
     rounding_ = largestRounding (raw.cloud);
+    pcl::PCLPointCloud2 cloud = toFloatFields (std::move (raw.cloud), {points.radius_field, points.confidence_field});
     NormalOptions &normals = line_.options.normals;
     if (!normals.has_view_point && raw.view_point)
     {
@@ -161,8 +161,8 @@ private:
     if (!line_.output.empty ())
     {
       Step step ("Saving", line_.output);
-      writeMesh (mesh_, line_.output, newFile (line_.output));
-      times_.write = step.done (mesh_.polygons.size (), "triangles");
+      writeMesh (mesh_, line_.output, line_.options.polygonizer.threads, newFile (line_.output));
+      times_.write = step.done (mesh_.triangles.size (), "triangles");
     }
     if (!line_.creases.empty ())
       writeCreases (mesh_, report_.creases, line_.creases, newFile (line_.creases));
@@ -217,7 +217,7 @@ private:
   std::vector<Eigen::Vector3d> queries_;
   double rounding_ = 0.0;
   bool has_face_normals_ = false;
-  pcl::PolygonMesh mesh_;
+  TriangleMesh mesh_;
   ImplicitField::ConstPtr field_;
   Report report_;
   ToolTimes times_;

@@ -13,8 +13,11 @@
 #include <pcl/search/search.h>
 #include <pcl/type_traits.h>
 
+#include <algorithm>
 #include <cstdint>
+#include <future>
 #include <string>
+#include <thread>
 #include <utility>
 #include <vector>
 
@@ -188,21 +191,36 @@ toPointCloud (const TriangleMesh &mesh, pcl::PointCloud<PointT> &cloud)
   }
 }
 
+/** \brief Triangles as PCL has them, each with memory of its own: that is taken from several threads. */
 inline void
 toPolygons (const TriangleMesh &mesh, std::vector<pcl::Vertices> &polygons)
 {
-  polygons.resize (mesh.triangles.size ());
-  for (std::size_t i = 0; i < mesh.triangles.size (); ++i)
-    polygons[i].vertices.assign (mesh.triangles[i].begin (), mesh.triangles[i].end ());
+  const std::size_t count = mesh.triangles.size ();
+  polygons.resize (count);
+  const auto convert = [&] (std::size_t first, std::size_t last)
+  {
+    for (std::size_t i = first; i < last; ++i)
+      polygons[i].vertices.assign (mesh.triangles[i].begin (), mesh.triangles[i].end ());
+  };
+  constexpr std::size_t MANY = 100000; // worth threads
+  const std::size_t threads = count < MANY ? 1 : std::min (std::max (std::thread::hardware_concurrency (), 1u), 16u);
+  std::vector<std::future<void>> others;
+  for (std::size_t t = 1; t < threads; ++t)
+    others.push_back (std::async (std::launch::async, convert, count * t / threads, count * (t + 1) / threads));
+  convert (0, count / threads);
+  for (std::future<void> &other : others)
+    other.get ();
 }
 
 template <typename PointT>
 void
 toPolygonMeshOf (const TriangleMesh &mesh, const pcl::PCLHeader &header, pcl::PolygonMesh &output)
 {
-  pcl::PointCloud<PointT> cloud;
-  toPointCloud (mesh, cloud);
-  pcl::toPCLPointCloud2 (cloud, output.cloud);
+  {
+    pcl::PointCloud<PointT> cloud;
+    toPointCloud (mesh, cloud);
+    pcl::toPCLPointCloud2 (cloud, output.cloud);
+  }
   output.header = output.cloud.header = header;
   toPolygons (mesh, output.polygons);
 }
@@ -224,6 +242,10 @@ toPolygonMesh (const TriangleMesh &mesh, Attributes attributes, const pcl::PCLHe
       break;
   }
 }
+
+/** \brief The failure that the exception being handled stands for. */
+Outcome
+outcomeOfException ();
 
 /** \brief Tell the user, once per call, what was done about points that are not as they should be. */
 void

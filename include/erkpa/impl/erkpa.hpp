@@ -12,7 +12,6 @@
 #include <pcl/console/print.h>
 
 #include <cstdint>
-#include <exception>
 #include <utility>
 
 namespace erkpa
@@ -27,17 +26,9 @@ ERKPA<PointNT>::guarded (StepT step)
   {
     outcome_ = step ();
   }
-  catch (const std::bad_alloc &)
-  {
-    outcome_ = {Status::INTERNAL_ERROR, "out of memory: use a larger voxel size or fewer points"};
-  }
-  catch (const std::exception &error)
-  {
-    outcome_ = {Status::INTERNAL_ERROR, error.what ()};
-  }
   catch (...)
   {
-    outcome_ = {Status::INTERNAL_ERROR, "a function given by the caller threw something that is no std::exception"};
+    outcome_ = outcomeOfException ();
   }
   if (!outcome_.ok ())
   {
