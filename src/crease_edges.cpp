@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "crease_edges.h"
 
+#include "mesh_intersections.h"
+
 #include <Eigen/Geometry>
 
 #include <algorithm>
@@ -20,10 +22,10 @@ using Triangle = std::array<int, 3>;
 class CreaseBuilder
 {
 public:
-  CreaseBuilder (const std::vector<CellLoop> &loops, const std::vector<MeshedLoop> &meshed,
+  CreaseBuilder (double voxel, const std::vector<CellLoop> &loops, const std::vector<MeshedLoop> &meshed,
                  std::vector<Triangle> &triangles, SurfaceVertices &vertices)
-      : loops_ (loops), meshed_ (meshed), triangles_ (triangles), vertices_ (vertices), centers_ (loops.size (), -1),
-        on_crease_ (loops.size (), 0)
+      : voxel_ (voxel), loops_ (loops), meshed_ (meshed), triangles_ (triangles), vertices_ (vertices),
+        centers_ (loops.size (), -1), on_crease_ (loops.size (), 0)
   {
   }
 
@@ -40,18 +42,10 @@ public:
       }
     pairLoops ();
     sortVertices ();
-    bool changed = true;
-    while (changed)
-    {
-      changed = false;
-      pairLoops ();
-      for (std::size_t i = 0; i < loops_.size (); ++i)
-        if (on_crease_[i] && isFolded (i))
-        {
-          on_crease_[i] = 0;
-          changed = true;
-        }
-    }
+    do
+      while (dropFolded ())
+        continue;
+    while (dropTangled ());
     for (std::size_t i = 0; i < loops_.size (); ++i)
       meshLoop (i);
     return {creases_.begin (), creases_.end ()};
@@ -192,25 +186,84 @@ private:
     return false;
   }
 
+  /** \brief Gives up the crease vertices of loops that fold over; false where none does. */
+  bool
+  dropFolded ()
+  {
+    bool changed = false;
+    pairLoops ();
+    for (std::size_t i = 0; i < loops_.size (); ++i)
+      if (on_crease_[i] && isFolded (i))
+      {
+        on_crease_[i] = 0;
+        changed = true;
+      }
+    return changed;
+  }
+
+  /** \brief Gives up crease vertices outside their cells where triangles pass through each other: of two the one
+   * farther off. False where nothing does. */
+  bool
+  dropTangled ()
+  {
+    std::vector<Triangle> triangles = triangles_;
+    std::vector<int> owners (triangles.size (), -1), suspects;
+    for (std::size_t i = 0; i < loops_.size (); ++i)
+    {
+      if (on_crease_[i])
+        addCreaseFan (i, triangles);
+      else
+        triangulateCell (loops_[i], vertices_, triangles);
+      for (std::size_t t = owners.size (); on_crease_[i] && t < triangles.size (); ++t)
+        suspects.push_back (static_cast<int> (t));
+      owners.resize (triangles.size (), on_crease_[i] ? static_cast<int> (i) : -1);
+    }
+    bool changed = false;
+    for (const auto &[suspect, other] : findIntersections (vertices_.positions, triangles, suspects, voxel_))
+    {
+      const int one = owners[static_cast<std::size_t> (suspect)], two = owners[static_cast<std::size_t> (other)];
+      const auto is_given_up = [this] (int loop) { return loop >= 0 && !on_crease_[static_cast<std::size_t> (loop)]; };
+      if (is_given_up (one) || is_given_up (two))
+        continue;
+      on_crease_[static_cast<std::size_t> (two < 0 || offsetOf (one) > offsetOf (two) ? one : two)] = 0;
+      changed = true;
+    }
+    return changed;
+  }
+
+  /** \brief How far the crease vertex of a loop is from its middle. */
+  double
+  offsetOf (int loop) const
+  {
+    const std::vector<int> &ring = loops_[static_cast<std::size_t> (loop)].ring;
+    Eigen::Vector3d middle = Eigen::Vector3d::Zero ();
+    for (const int v : ring)
+      middle += vertices_.positions[static_cast<std::size_t> (v)] / static_cast<double> (ring.size ());
+    return (vertices_.positions[static_cast<std::size_t> (center (loop))] - middle).norm ();
+  }
+
   void
   meshLoop (std::size_t loop)
   {
+    if (on_crease_[loop])
+      addCreaseFan (loop, triangles_);
+    else if (!triangulateCell (loops_[loop], vertices_, triangles_))
+      addFan (loops_[loop].ring, middleOf (loop), triangles_);
+  }
+
+  void
+  addCreaseFan (std::size_t loop, std::vector<Triangle> &triangles) const
+  {
     const std::vector<int> &ring = loops_[loop].ring;
-    if (!on_crease_[loop])
-    {
-      if (!triangulateCell (loops_[loop], vertices_, triangles_))
-        addFan (ring, middleOf (loop), triangles_);
-      return;
-    }
     const int c = centers_[loop];
     for (std::size_t i = 0; i < ring.size (); ++i)
     {
       const int a = ring[i], b = ring[(i + 1) % ring.size ()];
       const int d = nextOnCrease (loop, a, b);
       if (d < 0)
-        triangles_.push_back ({a, b, c});
+        triangles.push_back ({a, b, c});
       else // the other loop sees b, a and adds the other half
-        triangles_.push_back ({a, d, c});
+        triangles.push_back ({a, d, c});
     }
   }
 
@@ -237,6 +290,7 @@ private:
     return appendVertex (middle);
   }
 
+  double voxel_;
   const std::vector<CellLoop> &loops_;
   const std::vector<MeshedLoop> &meshed_;
   std::vector<Triangle> &triangles_;
@@ -251,10 +305,10 @@ private:
 } // namespace
 
 std::vector<VertexPair>
-addCreases (const std::vector<CellLoop> &loops, const std::vector<MeshedLoop> &meshed, std::vector<Triangle> &triangles,
-            SurfaceVertices &vertices)
+addCreases (double voxel, const std::vector<CellLoop> &loops, const std::vector<MeshedLoop> &meshed,
+            std::vector<Triangle> &triangles, SurfaceVertices &vertices)
 {
-  return CreaseBuilder (loops, meshed, triangles, vertices).build ();
+  return CreaseBuilder (voxel, loops, meshed, triangles, vertices).build ();
 }
 
 } // namespace erkpa
