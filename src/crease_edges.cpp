@@ -45,7 +45,7 @@ public:
     do
       while (dropFolded ())
         continue;
-    while (dropTangled ());
+    while (untangle ());
     for (std::size_t i = 0; i < loops_.size (); ++i)
       meshLoop (i);
     return {creases_.begin (), creases_.end ()};
@@ -201,10 +201,10 @@ private:
     return changed;
   }
 
-  /** \brief Gives up crease vertices outside their cells where triangles pass through each other: of two the one
-   * farther off. False where nothing does. */
+  /** \brief Undoes what brought triangles to pass through each other: vertices outside the cells they were found for.
+   * False where none do; vertices inside their cells cannot. */
   bool
-  dropTangled ()
+  untangle ()
   {
     std::vector<Triangle> triangles = triangles_;
     std::vector<int> owners (triangles.size (), -1), suspects;
@@ -214,21 +214,53 @@ private:
         addCreaseFan (i, triangles);
       else
         triangulateCell (loops_[i], vertices_, triangles);
-      for (std::size_t t = owners.size (); on_crease_[i] && t < triangles.size (); ++t)
-        suspects.push_back (static_cast<int> (t));
       owners.resize (triangles.size (), on_crease_[i] ? static_cast<int> (i) : -1);
     }
+    for (std::size_t t = 0; t < triangles.size (); ++t)
+      if (owners[t] >= 0 ||
+          std::any_of (triangles[t].begin (), triangles[t].end (), [this] (int v) { return isMoved (v); }))
+        suspects.push_back (static_cast<int> (t));
     bool changed = false;
-    for (const auto &[suspect, other] : findIntersections (vertices_.positions, triangles, suspects, voxel_))
+    for (const auto &[one, other] : findIntersections (vertices_.positions, triangles, suspects, voxel_))
     {
-      const int one = owners[static_cast<std::size_t> (suspect)], two = owners[static_cast<std::size_t> (other)];
-      const auto is_given_up = [this] (int loop) { return loop >= 0 && !on_crease_[static_cast<std::size_t> (loop)]; };
-      if (is_given_up (one) || is_given_up (two))
-        continue;
-      on_crease_[static_cast<std::size_t> (two < 0 || offsetOf (one) > offsetOf (two) ? one : two)] = 0;
-      changed = true;
+      const auto t = static_cast<std::size_t> (one), u = static_cast<std::size_t> (other);
+      changed = giveUpCrease (owners[t], owners[u]) || changed;
+      if (owners[t] < 0 && owners[u] < 0)
+        for (const int v :
+             {triangles[t][0], triangles[t][1], triangles[t][2], triangles[u][0], triangles[u][1], triangles[u][2]})
+          changed = putBack (v) || changed;
     }
     return changed;
+  }
+
+  /** \brief Whether a vertex of a thin wall was moved from the edge of the grid it was found on. */
+  bool
+  isMoved (int v) const
+  {
+    const auto vertex = static_cast<std::size_t> (v);
+    return vertex < vertices_.found.size () && vertices_.found[vertex] != vertices_.positions[vertex];
+  }
+
+  bool
+  putBack (int v)
+  {
+    if (!isMoved (v))
+      return false;
+    vertices_.positions[static_cast<std::size_t> (v)] = vertices_.found[static_cast<std::size_t> (v)];
+    return true;
+  }
+
+  /** \brief Of two loops (< 0: none), the one whose crease vertex lies farther off loses it; false where one has
+   * already, or there is none. */
+  bool
+  giveUpCrease (int one, int other)
+  {
+    const auto is_given_up = [this] (int loop) { return loop >= 0 && !on_crease_[static_cast<std::size_t> (loop)]; };
+    if (is_given_up (one) || is_given_up (other) || std::max (one, other) < 0)
+      return false;
+    const bool is_first = other < 0 || (one >= 0 && offsetOf (one) > offsetOf (other));
+    on_crease_[static_cast<std::size_t> (is_first ? one : other)] = 0;
+    return true;
   }
 
   /** \brief How far the crease vertex of a loop is from its middle. */

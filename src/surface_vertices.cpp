@@ -111,6 +111,7 @@ placeVertices (const ImplicitField &field, const PolygonizerOptions &options, Sp
 {
   const int channels = field.points ().channels;
   vertices.resize (static_cast<std::size_t> (grid.numberVertices ()), channels);
+  vertices.found.resize (vertices.positions.size ());
   const EdgeRoots roots (grid, options);
   const auto place_on_edge = [&] (LocalField &local, const GridBlock &block, int node, int axis)
   {
@@ -122,6 +123,7 @@ placeVertices (const ImplicitField &field, const PolygonizerOptions &options, Sp
                     grid.block (high.block).values[static_cast<std::size_t> (high.local)], sample);
     const auto vertex = static_cast<std::size_t> (SparseGrid::vertexOnEdge (block, node, axis));
     storeVertex (local, sample, position, vertex, channels, vertices);
+    vertices.found[vertex] = position;
     if (local.thickening () != 0.0)
       moveToFace (local, options, grid.voxelSize (), vertex, vertices);
   };
