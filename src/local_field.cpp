@@ -122,7 +122,7 @@ LocalField::evaluate (const Eigen::Vector3d &x, Task task)
 bool
 LocalField::evaluateUnwarped (const Eigen::Vector3d &x, Task task)
 {
-  has_face_centroid_ = false;
+  has_face_centroid_ = runs_out_ = false;
   if (!support_.covers (x))
     gatherUnwarped (x, 0.0);
   if (!support_.select (x))
@@ -179,6 +179,7 @@ bool
 LocalField::evaluateFaces (const Eigen::Vector3d &x, Task task)
 {
   const int count = std::min (groups_.count (), FaceTree::MAX_FACES);
+  const double spacing = support_.radius () * std::sqrt (M_PI / static_cast<double> (support_.nodes ().size ()));
   startVote (x, count);
   for (int group = 0; group < count; ++group)
     if (support_.selectPart (x, groups_.members (group)) && fitSelected (x, Task::HEIGHTS))
@@ -194,6 +195,7 @@ LocalField::evaluateFaces (const Eigen::Vector3d &x, Task task)
     face_ = nearestFace ();
     face_centroid_ = supportCentroid ();
     has_face_centroid_ = true;
+    runs_out_ = vote_.isInThinWall (tree, spacing);
     if (task != Task::VALUE)
       fitSelected (x, task);
     side_key_ = sideKeyOf (face_, enrichment_.sideKey ());
