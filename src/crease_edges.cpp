@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "crease_edges.h"
 
+#include "mesh_intersections.h"
+
 #include <Eigen/Geometry>
 
 #include <algorithm>
@@ -20,10 +22,10 @@ using Triangle = std::array<int, 3>;
 class CreaseBuilder
 {
 public:
-  CreaseBuilder (const std::vector<CellLoop> &loops, const std::vector<MeshedLoop> &meshed,
+  CreaseBuilder (double voxel, const std::vector<CellLoop> &loops, const std::vector<MeshedLoop> &meshed,
                  std::vector<Triangle> &triangles, SurfaceVertices &vertices)
-      : loops_ (loops), meshed_ (meshed), triangles_ (triangles), vertices_ (vertices), centers_ (loops.size (), -1),
-        on_crease_ (loops.size (), 0)
+      : voxel_ (voxel), loops_ (loops), meshed_ (meshed), triangles_ (triangles), vertices_ (vertices),
+        centers_ (loops.size (), -1), on_crease_ (loops.size (), 0)
   {
   }
 
@@ -40,18 +42,10 @@ public:
       }
     pairLoops ();
     sortVertices ();
-    bool changed = true;
-    while (changed)
-    {
-      changed = false;
-      pairLoops ();
-      for (std::size_t i = 0; i < loops_.size (); ++i)
-        if (on_crease_[i] && isFolded (i))
-        {
-          on_crease_[i] = 0;
-          changed = true;
-        }
-    }
+    do
+      while (dropFolded ())
+        continue;
+    while (untangle ());
     for (std::size_t i = 0; i < loops_.size (); ++i)
       meshLoop (i);
     return {creases_.begin (), creases_.end ()};
@@ -192,25 +186,116 @@ private:
     return false;
   }
 
+  /** \brief Gives up the crease vertices of loops that fold over; false where none does. */
+  bool
+  dropFolded ()
+  {
+    bool changed = false;
+    pairLoops ();
+    for (std::size_t i = 0; i < loops_.size (); ++i)
+      if (on_crease_[i] && isFolded (i))
+      {
+        on_crease_[i] = 0;
+        changed = true;
+      }
+    return changed;
+  }
+
+  /** \brief Undoes what brought triangles to pass through each other: vertices outside the cells they were found for.
+   * False where none do; vertices inside their cells cannot. */
+  bool
+  untangle ()
+  {
+    std::vector<Triangle> triangles = triangles_;
+    std::vector<int> owners (triangles.size (), -1), suspects;
+    for (std::size_t i = 0; i < loops_.size (); ++i)
+    {
+      if (on_crease_[i])
+        addCreaseFan (i, triangles);
+      else
+        triangulateCell (loops_[i], vertices_, triangles);
+      owners.resize (triangles.size (), on_crease_[i] ? static_cast<int> (i) : -1);
+    }
+    for (std::size_t t = 0; t < triangles.size (); ++t)
+      if (owners[t] >= 0 ||
+          std::any_of (triangles[t].begin (), triangles[t].end (), [this] (int v) { return isMoved (v); }))
+        suspects.push_back (static_cast<int> (t));
+    bool changed = false;
+    for (const auto &[one, other] : findIntersections (vertices_.positions, triangles, suspects, voxel_))
+    {
+      const auto t = static_cast<std::size_t> (one), u = static_cast<std::size_t> (other);
+      changed = giveUpCrease (owners[t], owners[u]) || changed;
+      if (owners[t] < 0 && owners[u] < 0)
+        for (const int v :
+             {triangles[t][0], triangles[t][1], triangles[t][2], triangles[u][0], triangles[u][1], triangles[u][2]})
+          changed = putBack (v) || changed;
+    }
+    return changed;
+  }
+
+  /** \brief Whether a vertex of a thin wall was moved from the edge of the grid it was found on. */
+  bool
+  isMoved (int v) const
+  {
+    const auto vertex = static_cast<std::size_t> (v);
+    return vertex < vertices_.found.size () && vertices_.found[vertex] != vertices_.positions[vertex];
+  }
+
+  bool
+  putBack (int v)
+  {
+    if (!isMoved (v))
+      return false;
+    vertices_.positions[static_cast<std::size_t> (v)] = vertices_.found[static_cast<std::size_t> (v)];
+    return true;
+  }
+
+  /** \brief Of two loops (< 0: none), the one whose crease vertex lies farther off loses it; false where one has
+   * already, or there is none. */
+  bool
+  giveUpCrease (int one, int other)
+  {
+    const auto is_given_up = [this] (int loop) { return loop >= 0 && !on_crease_[static_cast<std::size_t> (loop)]; };
+    if (is_given_up (one) || is_given_up (other) || std::max (one, other) < 0)
+      return false;
+    const bool is_first = other < 0 || (one >= 0 && offsetOf (one) > offsetOf (other));
+    on_crease_[static_cast<std::size_t> (is_first ? one : other)] = 0;
+    return true;
+  }
+
+  /** \brief How far the crease vertex of a loop is from its middle. */
+  double
+  offsetOf (int loop) const
+  {
+    const std::vector<int> &ring = loops_[static_cast<std::size_t> (loop)].ring;
+    Eigen::Vector3d middle = Eigen::Vector3d::Zero ();
+    for (const int v : ring)
+      middle += vertices_.positions[static_cast<std::size_t> (v)] / static_cast<double> (ring.size ());
+    return (vertices_.positions[static_cast<std::size_t> (center (loop))] - middle).norm ();
+  }
+
   void
   meshLoop (std::size_t loop)
   {
+    if (on_crease_[loop])
+      addCreaseFan (loop, triangles_);
+    else if (!triangulateCell (loops_[loop], vertices_, triangles_))
+      addFan (loops_[loop].ring, middleOf (loop), triangles_);
+  }
+
+  void
+  addCreaseFan (std::size_t loop, std::vector<Triangle> &triangles) const
+  {
     const std::vector<int> &ring = loops_[loop].ring;
-    if (!on_crease_[loop])
-    {
-      if (!triangulateCell (loops_[loop], vertices_, triangles_))
-        addFan (ring, middleOf (loop), triangles_);
-      return;
-    }
     const int c = centers_[loop];
     for (std::size_t i = 0; i < ring.size (); ++i)
     {
       const int a = ring[i], b = ring[(i + 1) % ring.size ()];
       const int d = nextOnCrease (loop, a, b);
       if (d < 0)
-        triangles_.push_back ({a, b, c});
+        triangles.push_back ({a, b, c});
       else // the other loop sees b, a and adds the other half
-        triangles_.push_back ({a, d, c});
+        triangles.push_back ({a, d, c});
     }
   }
 
@@ -237,6 +322,7 @@ private:
     return appendVertex (middle);
   }
 
+  double voxel_;
   const std::vector<CellLoop> &loops_;
   const std::vector<MeshedLoop> &meshed_;
   std::vector<Triangle> &triangles_;
@@ -251,10 +337,10 @@ private:
 } // namespace
 
 std::vector<VertexPair>
-addCreases (const std::vector<CellLoop> &loops, const std::vector<MeshedLoop> &meshed, std::vector<Triangle> &triangles,
-            SurfaceVertices &vertices)
+addCreases (double voxel, const std::vector<CellLoop> &loops, const std::vector<MeshedLoop> &meshed,
+            std::vector<Triangle> &triangles, SurfaceVertices &vertices)
 {
-  return CreaseBuilder (loops, meshed, triangles, vertices).build ();
+  return CreaseBuilder (voxel, loops, meshed, triangles, vertices).build ();
 }
 
 } // namespace erkpa

@@ -18,7 +18,7 @@ namespace erkpa
  * \return the edges of the mesh that run along creases, sorted
  */
 std::vector<VertexPair>
-addCreases (const std::vector<CellLoop> &loops, const std::vector<MeshedLoop> &meshed,
+addCreases (double voxel, const std::vector<CellLoop> &loops, const std::vector<MeshedLoop> &meshed,
             std::vector<std::array<int, 3>> &triangles, SurfaceVertices &vertices);
 
 } // namespace erkpa

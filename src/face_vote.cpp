@@ -52,24 +52,46 @@ FaceVote::electTree () const
   return *best;
 }
 
+bool
+FaceVote::thicknessBetween (const FaceTree &tree, std::size_t face, std::size_t other, double &thickness) const
+{
+  constexpr double OPPOSITE = -0.7; // cosine
+  const double cosine = slopes_[face].dot (slopes_[other]);
+  if (other == face || cosine > OPPOSITE * slopes_[face].norm () * slopes_[other].norm ())
+    return false;
+  const double side = tree.takesLarger (static_cast<int> (face), static_cast<int> (other)) ? -1.0 : 1.0;
+  thickness = side * (values_[face] + values_[other]);
+  return true;
+}
+
 double
 FaceVote::thickening (const FaceTree &tree, double least_wall) const
 {
-  constexpr double OPPOSITE = -0.7, FADE = 8.0;
+  constexpr double FADE = 8.0;
   const std::size_t winner = winnerOf (tree);
-  double most = 0.0;
+  double most = 0.0, thickness = 0.0;
   for (std::size_t other = 0; other < groups_.size () && least_wall > 0.0; ++other)
   {
-    const double cosine = slopes_[winner].dot (slopes_[other]);
-    if (other == winner || cosine > OPPOSITE * slopes_[winner].norm () * slopes_[other].norm ())
+    if (!thicknessBetween (tree, winner, other, thickness))
       continue;
     const double side = tree.takesLarger (static_cast<int> (winner), static_cast<int> (other)) ? -1.0 : 1.0;
-    const double thickness = side * (values_[winner] + values_[other]);
     const double half = 0.5 * least_wall + (thickness > 0.0 ? -0.5 : FADE) * thickness;
     if (half > std::abs (most))
       most = -side * half;
   }
   return most;
+}
+
+bool
+FaceVote::isInThinWall (const FaceTree &tree, double most) const
+{
+  const std::size_t winner = winnerOf (tree);
+  double thickness = 0.0;
+  for (std::size_t other = 0; other < groups_.size (); ++other)
+    if (tree.takesLarger (static_cast<int> (winner), static_cast<int> (other)) &&
+        thicknessBetween (tree, winner, other, thickness) && thickness < most)
+      return true;
+  return false;
 }
 
 } // namespace erkpa

@@ -89,7 +89,17 @@ public:
   double
   thickening (const FaceTree &tree, double least_wall) const;
 
+  /** \brief Whether x is in a wall thinner than \a most, or in the air beyond the edge in which its faces meet. */
+  bool
+  isInThinWall (const FaceTree &tree, double most) const;
+
 private:
+  /** \brief How thick the wall or gap between two opposite faces is at x, negative beyond the edge in which they meet.
+   * \return false where they are not opposite
+   */
+  bool
+  thicknessBetween (const FaceTree &tree, std::size_t face, std::size_t other, double &thickness) const;
+
   double radius_ = 0.0;
   std::vector<Voter> voters_;
   std::vector<int> groups_;             // of the faces

@@ -111,6 +111,7 @@ LocalField::evaluate (const Eigen::Vector3d &x, Task task)
 bool
 LocalField::evaluateUnwarped (const Eigen::Vector3d &x, Task task)
 {
+  has_face_centroid_ = runs_out_ = false;
   if (!support_.covers (x))
     gatherUnwarped (x, 0.0);
   if (!support_.select (x))
@@ -167,6 +168,7 @@ bool
 LocalField::evaluateFaces (const Eigen::Vector3d &x, Task task)
 {
   const int count = std::min (groups_.count (), FaceTree::MAX_FACES);
+  const double spacing = support_.radius () * std::sqrt (M_PI / static_cast<double> (support_.nodes ().size ()));
   startVote (x, count);
   for (int group = 0; group < count; ++group)
     if (support_.selectPart (x, groups_.members (group)) && fitSelected (x, Task::HEIGHTS))
@@ -180,6 +182,9 @@ LocalField::evaluateFaces (const Eigen::Vector3d &x, Task task)
     thickening_ = vote_.thickening (tree, least_wall_);
     support_.selectPart (x, groups_.members (vote_.groupOf (winner)));
     face_ = nearestFace ();
+    face_centroid_ = supportCentroid ();
+    has_face_centroid_ = true;
+    runs_out_ = vote_.isInThinWall (tree, spacing);
     if (task != Task::VALUE)
       fitSelected (x, task);
     side_key_ = sideKeyOf (face_, enrichment_.sideKey ());
@@ -293,22 +298,28 @@ LocalField::fitWith (Task task)
     fit.shapeFunctions (shape_functions_);
 }
 
-double
-LocalField::borderOffset () const
+Eigen::Vector3d
+LocalField::supportCentroid () const
 {
-  Eigen::Vector3d centroid = Eigen::Vector3d::Zero ();
+  Eigen::Vector3d sum = Eigen::Vector3d::Zero ();
   double total = 0.0;
   for (const SupportNode &node : support_.nodes ())
   {
-    centroid += node.weight * node.u;
+    sum += node.weight * node.u;
     total += node.weight;
   }
+  return total > 0.0 ? Eigen::Vector3d (sum / total) : Eigen::Vector3d::Constant (HUGE_VAL);
+}
+
+double
+LocalField::borderOffset () const
+{
+  const Eigen::Vector3d aside = centroid ();
   const double slope = result_.gradient.norm ();
-  if (!(total > 0.0) || !(slope > 0.0))
+  if (!aside.allFinite () || !(slope > 0.0))
     return HUGE_VAL;
-  centroid /= total;
   const Eigen::Vector3d normal = result_.gradient / slope;
-  return (centroid - centroid.dot (normal) * normal).norm ();
+  return (aside - aside.dot (normal) * normal).norm ();
 }
 
 void

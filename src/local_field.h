@@ -103,6 +103,16 @@ public:
     return thickening_;
   }
 
+  /** \brief How far the nodes that the value at the point last evaluated is fitted to lie aside of it: their weighted
+   * centroid, in their support radius. About 0.27 on the border of a face, more beyond. Zero where the faces of a thin
+   * wall run out into an edge, which may lie far from nodes.
+   */
+  double
+  aside () const
+  {
+    return runs_out_ ? 0.0 : centroid ().norm ();
+  }
+
   /** \brief A number that differs between the two sides of a crease. */
   std::uint64_t
   sideKey () const
@@ -196,6 +206,17 @@ private:
   void
   fitWith (Task task);
 
+  /** \brief Of the nodes of the support selected, from the point, in ε. */
+  Eigen::Vector3d
+  supportCentroid () const;
+
+  /** \brief The same for the nodes of the face that holds at the point last evaluated. */
+  Eigen::Vector3d
+  centroid () const
+  {
+    return has_face_centroid_ ? face_centroid_ : supportCentroid ();
+  }
+
   double
   borderOffset () const;
 
@@ -212,6 +233,9 @@ private:
   FaceVote vote_;
   Eigen::Vector3d slope_ = Eigen::Vector3d::Zero (); // of the fit last asked for its heights
   std::vector<double> heights_;                      // of that fit at the voters
+  Eigen::Vector3d face_centroid_ = Eigen::Vector3d::Zero ();
+  bool has_face_centroid_ = false; // else it is that of the support
+  bool runs_out_ = false;          // whether the point is in a wall thinner than the nodes are apart
   double least_wall_ = 0.0, thickening_ = 0.0;
   int face_ = -1;
   std::uint64_t side_key_ = 0;

@@ -109,8 +109,11 @@ isInReach (const LocalField &local, const PolygonizerOptions &options, double vo
 {
   const Support &support = local.support ();
   const double offset = std::abs (options.iso_level);
+  // Beyond its border a face goes on for a while, and might meet another one there.
+  constexpr double FAR_ASIDE = 0.65, APART = 0.5; // support radii
+  const bool is_beyond = support.nearestDistance () > APART * support.radius () + offset && local.aside () > FAR_ASIDE;
   // A cell as large as the support or larger reaches beyond it, even where nodes lie in the cell.
-  return support.quartileDistance () <= options.reach * support.radius () + offset ||
+  return (!is_beyond && support.quartileDistance () <= options.reach * support.radius () + offset) ||
          support.nearestDistance () <= local.unwarpedLength (std::sqrt (3.0) * voxel_size) + offset;
 }
 

@@ -200,6 +200,8 @@ private:
   store (const BlockField &field, std::size_t point, const Eigen::Vector3d &position, std::size_t vertex) const
   {
     vertices_.positions[vertex] = position;
+    if (!vertices_.found.empty ())
+      vertices_.found[vertex] = position;
     vertices_.normals[vertex] = field.gradient (point).stableNormalized ();
     vertices_.border_offsets[vertex] = field.borderOffset (point);
     vertices_.faces[vertex] = field.face (point);
@@ -224,6 +226,8 @@ private:
     }
     const std::size_t vertex = vertexOf (block, root);
     storeVertex (local, sample, position, vertex, channels_, vertices_);
+    if (!vertices_.found.empty ())
+      vertices_.found[vertex] = position;
     if (local.thickening () != 0.0)
       moveToFace (local, options_, grid_.voxelSize (), vertex, vertices_);
   }
@@ -243,6 +247,8 @@ placeVertices (const ImplicitField &field, const PolygonizerOptions &options, Sp
 {
   const int channels = field.points ().channels;
   vertices.resize (static_cast<std::size_t> (grid.numberVertices ()), channels);
+  if (field.faces () != nullptr)
+    vertices.found.resize (vertices.positions.size ());
   const VertexPlacer placer (field, options, grid, vertices);
   const auto blocks = static_cast<std::size_t> (grid.blockCount ());
   constexpr std::size_t SLICE = 8192;

@@ -2,6 +2,7 @@
 //
 // Sharp edges from the cloud to the mesh: found in the points or given, they are chains of the mesh's edges.
 #include "erkpa_tests.h"
+#include "mesh_intersections.h"
 
 #include <gtest/gtest.h>
 
@@ -56,6 +57,52 @@ struct TurnedBox
   shapes::Samples samples;
   double spacing;
 };
+
+/** \brief A tetrahedron that is thin and runs out into edges of 15 degrees and two sharp tips. */
+shapes::Samples
+blade (int count)
+{
+  const std::array<Vector3d, 4> corners{Vector3d (-1.0, 0.0, 0.0), Vector3d (1.0, 0.0, 0.0), Vector3d (0.1, 0.8, 0.1),
+                                        Vector3d (-0.1, 0.8, -0.1)};
+  const Vector3d middle = 0.25 * (corners[0] + corners[1] + corners[2] + corners[3]);
+  std::mt19937 random (6);
+  std::uniform_real_distribution<double> unit (0.0, 1.0);
+  shapes::Samples samples;
+  double total = 0.0;
+  const auto area = [&] (int face)
+  {
+    const auto at = [&] (int i) { return corners[static_cast<std::size_t> ((face + i) % 4)]; };
+    const Vector3d normal = (at (1) - at (0)).cross (at (2) - at (0));
+    return Vector3d (normal.dot (at (0) - middle) > 0.0 ? normal : -normal);
+  };
+  for (int face = 0; face < 4; ++face)
+    total += area (face).norm ();
+  for (int face = 0; face < 4; ++face)
+    for (int i = 0; i < static_cast<int> (count * area (face).norm () / total); ++i)
+    {
+      const double u = std::sqrt (unit (random)), v = unit (random);
+      const auto at = [&] (int j) { return corners[static_cast<std::size_t> ((face + j) % 4)]; };
+      samples.add ((1.0 - u) * at (0) + u * (1.0 - v) * at (1) + u * v * at (2), area (face).normalized ());
+    }
+  return samples;
+}
+
+/** \brief The two sides of an open sheet of thickness \a gap, 2 long and 1 wide; the upper ends at x = \a end. */
+shapes::Samples
+twoSheets (double end, double gap, double spacing)
+{
+  std::mt19937 random (9);
+  std::uniform_real_distribution<double> unit (0.0, 1.0);
+  shapes::Samples samples;
+  for (const bool is_upper : {false, true})
+  {
+    const double length = is_upper ? end : 2.0;
+    for (int i = 0; i < static_cast<int> (length / (spacing * spacing)); ++i)
+      samples.add ({length * unit (random), unit (random), is_upper ? gap : 0.0},
+                   is_upper ? Vector3d::UnitZ () : -Vector3d::UnitZ ());
+  }
+  return samples;
+}
 
 /** \brief A mesh with its creases. */
 struct SharpMesh
@@ -360,6 +407,35 @@ TEST (SharpEdges, KeepAThinPlateClosed)
   expectClosedBall (result);
   const double volume = 8.0 * plate.half.prod ();
   EXPECT_NEAR (shapes::volume (result.mesh), volume, 0.1 * volume);
+}
+
+TEST (SharpEdges, ThatAreAcuteMakeNoTrianglesThatPassThroughEachOther)
+{
+  const SharpMesh result = automaticMeshOf (blade (12000));
+  expectClosedBall (result);
+  std::vector<Vector3d> positions;
+  std::vector<int> all;
+  for (const Eigen::Vector3f &v : result.mesh.vertices)
+    positions.emplace_back (v.cast<double> ());
+  for (std::size_t t = 0; t < result.mesh.triangles.size (); ++t)
+    all.push_back (static_cast<int> (t));
+  EXPECT_TRUE (erkpa::findIntersections (positions, result.mesh.triangles, all, 0.03).empty ());
+}
+
+TEST (SharpEdges, LeaveASheetItsBorderThoughAnotherGoesOnBesideIt)
+{
+  const double end = 1.2, spacing = 0.03;
+  const SharpMesh result = automaticMeshOf (twoSheets (end, 2.0 * spacing, spacing));
+  EXPECT_MESH_CONTRACT (result.mesh, false);
+  double farthest = 0.0, farthest_below = 0.0;
+  for (std::size_t v = 0; v < result.mesh.vertices.size (); ++v)
+  {
+    const double x = static_cast<double> (result.mesh.vertices[v].x ());
+    double &reached = result.mesh.normals[v].z () > 0.9f ? farthest : farthest_below;
+    reached = std::max (reached, x);
+  }
+  EXPECT_NEAR (farthest, end, 2.0 * spacing);
+  EXPECT_NEAR (farthest_below, 2.0, 2.0 * spacing);
 }
 
 TEST (SharpEdges, HaveTheNormalsOfEachSideWhereTheyAreSplit)

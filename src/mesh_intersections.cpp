@@ -1,0 +1,146 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "mesh_intersections.h"
+
+#include <Eigen/Geometry>
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <unordered_map>
+
+namespace erkpa
+{
+
+namespace
+{
+
+using Eigen::Vector3d;
+using Triangle = std::array<int, 3>;
+using Positions = std::vector<Vector3d>;
+
+const Vector3d &
+at (const Positions &positions, int vertex)
+{
+  return positions[static_cast<std::size_t> (vertex)];
+}
+
+bool
+hasVertex (const Triangle &triangle, int vertex)
+{
+  return std::find (triangle.begin (), triangle.end (), vertex) != triangle.end ();
+}
+
+/** \brief Six times the volume of the tetrahedron over a triangle, positive on the side its normal points to. */
+double
+volume (const Vector3d &a, const Vector3d &b, const Vector3d &c, const Vector3d &tip)
+{
+  return (b - a).cross (c - a).dot (tip - a);
+}
+
+/** \brief Whether the line from p to q passes through the inside of a triangle. */
+bool
+pierces (const Vector3d &p, const Vector3d &q, const Vector3d &a, const Vector3d &b, const Vector3d &c)
+{
+  const double from = volume (a, b, c, p), to = volume (a, b, c, q);
+  if (!(from * to < 0.0))
+    return false;
+  const double ab = volume (p, q, a, b), bc = volume (p, q, b, c), ca = volume (p, q, c, a);
+  return (ab > 0.0 && bc > 0.0 && ca > 0.0) || (ab < 0.0 && bc < 0.0 && ca < 0.0);
+}
+
+/** \brief Whether a side of one triangle passes through the other; sides that end at it are left out. */
+bool
+hasPiercingSide (const Positions &positions, const Triangle &one, const Triangle &other)
+{
+  for (std::size_t i = 0; i < 3; ++i)
+  {
+    const int p = one[i], q = one[(i + 1) % 3];
+    if (!hasVertex (other, p) && !hasVertex (other, q) &&
+        pierces (at (positions, p), at (positions, q), at (positions, other[0]), at (positions, other[1]),
+                 at (positions, other[2])))
+      return true;
+  }
+  return false;
+}
+
+struct Box
+{
+  Vector3d low, high;
+
+  Box (const Positions &positions, const Triangle &triangle)
+      : low (at (positions, triangle[0])), high (at (positions, triangle[0]))
+  {
+    for (const int v : triangle)
+    {
+      low = low.cwiseMin (at (positions, v));
+      high = high.cwiseMax (at (positions, v));
+    }
+  }
+
+  bool
+  meets (const Box &other) const
+  {
+    return (low.array () <= other.high.array ()).all () && (other.low.array () <= high.array ()).all ();
+  }
+};
+
+/** \brief Calls visit with the key of each grid cell that a box reaches into. */
+template <typename VisitT>
+void
+visitCells (const Box &box, double cell, VisitT visit)
+{
+  const Vector3d low = (box.low / cell).array ().floor (), high = (box.high / cell).array ().floor ();
+  const auto part = [] (double v) { return static_cast<std::uint64_t> (static_cast<std::int64_t> (v)) & 0x1fffff; };
+  for (double x = low.x (); x <= high.x (); ++x)
+    for (double y = low.y (); y <= high.y (); ++y)
+      for (double z = low.z (); z <= high.z (); ++z)
+        visit (part (x) << 42 | part (y) << 21 | part (z));
+}
+
+} // namespace
+
+bool
+passThrough (const Positions &positions, const Triangle &one, const Triangle &other)
+{
+  const auto is_shared = [&] (int v) { return hasVertex (other, v); };
+  if (std::count_if (one.begin (), one.end (), is_shared) > 1)
+    return false;
+  return hasPiercingSide (positions, one, other) || hasPiercingSide (positions, other, one);
+}
+
+std::vector<std::pair<int, int>>
+findIntersections (const Positions &positions, const std::vector<Triangle> &triangles, const std::vector<int> &suspects,
+                   double cell)
+{
+  std::unordered_map<std::uint64_t, std::vector<int>> cells;
+  std::vector<char> is_suspect (triangles.size (), 0);
+  for (const int s : suspects)
+  {
+    is_suspect[static_cast<std::size_t> (s)] = 1;
+    visitCells (Box (positions, triangles[static_cast<std::size_t> (s)]), cell,
+                [&] (std::uint64_t key) { cells[key].push_back (s); });
+  }
+  std::vector<std::pair<int, int>> pairs;
+  for (std::size_t t = 0; t < triangles.size (); ++t)
+  {
+    const Box box (positions, triangles[t]);
+    visitCells (box, cell,
+                [&] (std::uint64_t key)
+                {
+                  const auto found = cells.find (key);
+                  if (found == cells.end ())
+                    return;
+                  for (const int s : found->second)
+                    if ((!is_suspect[t] || s < static_cast<int> (t)) &&
+                        box.meets (Box (positions, triangles[static_cast<std::size_t> (s)])) &&
+                        passThrough (positions, triangles[static_cast<std::size_t> (s)], triangles[t]))
+                      pairs.emplace_back (s, static_cast<int> (t));
+                });
+  }
+  std::sort (pairs.begin (), pairs.end ());
+  pairs.erase (std::unique (pairs.begin (), pairs.end ()), pairs.end ());
+  return pairs;
+}
+
+} // namespace erkpa
