@@ -30,19 +30,20 @@ public:
   }
 
   /** \brief Run jobs 0 .. count - 1.
+   * \param[in] first first (job) is a vertex of the job; -1 where there is no need of it any more
    * \param[in] reach reach (job, visit) visits the vertices of a job and their neighbours; none where there is no need
    * of it any more
    * \param[in] make_worker,work,finish as in parallelFor
    */
-  template <typename ReachT, typename MakeWorkerT, typename WorkT, typename FinishT>
+  template <typename FirstT, typename ReachT, typename MakeWorkerT, typename WorkT, typename FinishT>
   void
-  run (std::size_t count, ReachT reach, MakeWorkerT make_worker, WorkT work, FinishT finish)
+  run (std::size_t count, FirstT first_vertex, ReachT reach, MakeWorkerT make_worker, WorkT work, FinishT finish)
   {
     std::vector<std::uint32_t> jobs (count);
     for (std::size_t i = 0; i < count; ++i)
       jobs[i] = static_cast<std::uint32_t> (i);
     for (const double shift : {0.0, 0.5})
-      runInside (shift, reach, make_worker, work, finish, jobs);
+      runInside (shift, first_vertex, reach, make_worker, work, finish, jobs);
     auto worker = make_worker ();
     for (const std::uint32_t job : jobs)
       if (isNeeded (job, reach))
@@ -73,9 +74,9 @@ private:
   }
 
   /** \brief Run the jobs inside of regions; those on borders are left. */
-  template <typename ReachT, typename MakeWorkerT, typename WorkT, typename FinishT>
+  template <typename FirstT, typename ReachT, typename MakeWorkerT, typename WorkT, typename FinishT>
   void
-  runInside (double shift, ReachT &reach, MakeWorkerT &make_worker, WorkT &work, FinishT &finish,
+  runInside (double shift, FirstT &first_vertex, ReachT &reach, MakeWorkerT &make_worker, WorkT &work, FinishT &finish,
              std::vector<std::uint32_t> &jobs) const
   {
     std::vector<std::uint64_t> places (jobs.size ()); // region and job
@@ -83,7 +84,10 @@ private:
                     [&] (std::size_t first, std::size_t last)
                     {
                       for (std::size_t i = first; i < last; ++i)
-                        places[i] = std::uint64_t (firstRegion (jobs[i], shift, reach)) << 32 | jobs[i];
+                      {
+                        const int v = first_vertex (jobs[i]);
+                        places[i] = std::uint64_t (v < 0 ? NOWHERE : regionOf (v, shift)) << 32 | jobs[i];
+                      }
                     });
     std::sort (places.begin (), places.end ());
     std::vector<std::size_t> firsts; // of each region
@@ -115,16 +119,6 @@ private:
         finish);
     jobs = joinParts (std::move (left), threads_);
     std::sort (jobs.begin (), jobs.end ());
-  }
-
-  /** \brief The region of a job's first vertex. */
-  template <typename ReachT>
-  std::uint32_t
-  firstRegion (std::uint32_t job, double shift, ReachT &reach) const
-  {
-    int first = -1;
-    reach (job, [&first] (int v) { first = first < 0 ? v : first; });
-    return first < 0 ? NOWHERE : regionOf (first, shift);
   }
 
   double scale_;

@@ -116,7 +116,7 @@ private:
   {
     bool changed = false;
     regions_.run (
-        count,
+        count, [&] (std::size_t job) { return edges_.isAlive (at (job)) ? edges_.start (at (job)) : -1; },
         [&] (std::size_t job, auto visit)
         {
           const int h = at (job);
