@@ -226,9 +226,7 @@ private:
       const auto t = static_cast<std::size_t> (one), u = static_cast<std::size_t> (other);
       changed = giveUpCrease (owners[t], owners[u]) || changed;
       if (owners[t] < 0 && owners[u] < 0)
-        for (const int v :
-             {triangles[t][0], triangles[t][1], triangles[t][2], triangles[u][0], triangles[u][1], triangles[u][2]})
-          changed = putBack (v) || changed;
+        changed = putBackFarthest (triangles[t], triangles[u]) || changed;
     }
     return changed;
   }
@@ -241,13 +239,24 @@ private:
     return vertex < vertices_.found.size () && vertices_.found[vertex] != vertices_.positions[vertex];
   }
 
+  /** \brief Of the vertices of two triangles, takes the one that was moved farthest to where it was found. */
   bool
-  putBack (int v)
+  putBackFarthest (const Triangle &one, const Triangle &other)
   {
-    if (!isMoved (v))
-      return false;
-    vertices_.positions[static_cast<std::size_t> (v)] = vertices_.found[static_cast<std::size_t> (v)];
-    return true;
+    int farthest = -1;
+    double most = 0.0;
+    for (const Triangle &triangle : {one, other})
+      for (const int v : triangle)
+      {
+        const auto vertex = static_cast<std::size_t> (v);
+        const double way = isMoved (v) ? (vertices_.found[vertex] - vertices_.positions[vertex]).norm () : 0.0;
+        if (way > most)
+          farthest = v;
+        most = std::max (most, way);
+      }
+    if (farthest >= 0)
+      vertices_.positions[static_cast<std::size_t> (farthest)] = vertices_.found[static_cast<std::size_t> (farthest)];
+    return farthest >= 0;
   }
 
   /** \brief Of two loops (< 0: none), the one whose crease vertex lies farther off loses it; false where one has
