@@ -220,15 +220,21 @@ private:
       if (owners[t] >= 0 ||
           std::any_of (triangles[t].begin (), triangles[t].end (), [this] (int v) { return isMoved (v); }))
         suspects.push_back (static_cast<int> (t));
-    bool changed = false;
+    std::set<int> touched; // one change in a place at a time: it may be enough
+    const auto is_touched = [&touched] (int v) { return touched.count (v) > 0; };
     for (const auto &[one, other] : findIntersections (vertices_.positions, triangles, suspects, voxel_))
     {
       const auto t = static_cast<std::size_t> (one), u = static_cast<std::size_t> (other);
-      changed = giveUpCrease (owners[t], owners[u]) || changed;
-      if (owners[t] < 0 && owners[u] < 0)
-        changed = putBackFarthest (triangles[t], triangles[u]) || changed;
+      const Triangle &first = triangles[t], &second = triangles[u];
+      if (std::any_of (first.begin (), first.end (), is_touched) ||
+          std::any_of (second.begin (), second.end (), is_touched))
+        continue;
+      if (!giveUpCrease (owners[t], owners[u]) && !putBackFarthest (first, second))
+        continue;
+      touched.insert (first.begin (), first.end ());
+      touched.insert (second.begin (), second.end ());
     }
-    return changed;
+    return !touched.empty ();
   }
 
   /** \brief Whether a vertex of a thin wall was moved from the edge of the grid it was found on. */
