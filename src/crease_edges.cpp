@@ -220,17 +220,21 @@ private:
       if (owners[t] >= 0 ||
           std::any_of (triangles[t].begin (), triangles[t].end (), [this] (int v) { return isMoved (v); }))
         suspects.push_back (static_cast<int> (t));
-    bool changed = false;
+    std::set<int> touched; // one change in a place at a time: it may be enough
+    const auto is_touched = [&touched] (int v) { return touched.count (v) > 0; };
     for (const auto &[one, other] : findIntersections (vertices_.positions, triangles, suspects, voxel_))
     {
       const auto t = static_cast<std::size_t> (one), u = static_cast<std::size_t> (other);
-      changed = giveUpCrease (owners[t], owners[u]) || changed;
-      if (owners[t] < 0 && owners[u] < 0)
-        for (const int v :
-             {triangles[t][0], triangles[t][1], triangles[t][2], triangles[u][0], triangles[u][1], triangles[u][2]})
-          changed = putBack (v) || changed;
+      const Triangle &first = triangles[t], &second = triangles[u];
+      if (std::any_of (first.begin (), first.end (), is_touched) ||
+          std::any_of (second.begin (), second.end (), is_touched))
+        continue;
+      if (!giveUpCrease (owners[t], owners[u]) && !putBackFarthest (first, second))
+        continue;
+      touched.insert (first.begin (), first.end ());
+      touched.insert (second.begin (), second.end ());
     }
-    return changed;
+    return !touched.empty ();
   }
 
   /** \brief Whether a vertex of a thin wall was moved from the edge of the grid it was found on. */
@@ -241,13 +245,24 @@ private:
     return vertex < vertices_.found.size () && vertices_.found[vertex] != vertices_.positions[vertex];
   }
 
+  /** \brief Of the vertices of two triangles, takes the one that was moved farthest to where it was found. */
   bool
-  putBack (int v)
+  putBackFarthest (const Triangle &one, const Triangle &other)
   {
-    if (!isMoved (v))
-      return false;
-    vertices_.positions[static_cast<std::size_t> (v)] = vertices_.found[static_cast<std::size_t> (v)];
-    return true;
+    int farthest = -1;
+    double most = 0.0;
+    for (const Triangle &triangle : {one, other})
+      for (const int v : triangle)
+      {
+        const auto vertex = static_cast<std::size_t> (v);
+        const double way = isMoved (v) ? (vertices_.found[vertex] - vertices_.positions[vertex]).norm () : 0.0;
+        if (way > most)
+          farthest = v;
+        most = std::max (most, way);
+      }
+    if (farthest >= 0)
+      vertices_.positions[static_cast<std::size_t> (farthest)] = vertices_.found[static_cast<std::size_t> (farthest)];
+    return farthest >= 0;
   }
 
   /** \brief Of two loops (< 0: none), the one whose crease vertex lies farther off loses it; false where one has

@@ -99,7 +99,7 @@ twoSheets (double end, double gap, double spacing)
     const double length = is_upper ? end : 2.0;
     for (int i = 0; i < static_cast<int> (length / (spacing * spacing)); ++i)
       samples.add ({length * unit (random), unit (random), is_upper ? gap : 0.0},
-                   is_upper ? Vector3d::UnitZ () : -Vector3d::UnitZ ());
+                   (is_upper ? 1.0 : -1.0) * Vector3d::UnitZ ());
   }
   return samples;
 }
@@ -425,14 +425,17 @@ TEST (SharpEdges, ThatAreAcuteMakeNoTrianglesThatPassThroughEachOther)
 TEST (SharpEdges, LeaveASheetItsBorderThoughAnotherGoesOnBesideIt)
 {
   const double end = 1.2, spacing = 0.03;
-  const SharpMesh result = automaticMeshOf (twoSheets (end, 2.0 * spacing, spacing));
+  const Eigen::Matrix3d turn = Eigen::AngleAxisd (0.6, Vector3d (0.3, 1.0, 0.5).normalized ()).toRotationMatrix ();
+  const SharpMesh result =
+      automaticMeshOf (twoSheets (end, 2.0 * spacing, spacing).moved (turn, 1.0, Vector3d::Zero ()));
   EXPECT_MESH_CONTRACT (result.mesh, false);
   double farthest = 0.0, farthest_below = 0.0;
   for (std::size_t v = 0; v < result.mesh.vertices.size (); ++v)
   {
-    const double x = static_cast<double> (result.mesh.vertices[v].x ());
-    double &reached = result.mesh.normals[v].z () > 0.9f ? farthest : farthest_below;
-    reached = std::max (reached, x);
+    const Vector3d position = turn.transpose () * result.at (static_cast<int> (v));
+    const bool is_upper = (turn.transpose () * result.mesh.normals[v].cast<double> ()).z () > 0.9;
+    double &reached = is_upper ? farthest : farthest_below;
+    reached = std::max (reached, position.x ());
   }
   EXPECT_NEAR (farthest, end, 2.0 * spacing);
   EXPECT_NEAR (farthest_below, 2.0, 2.0 * spacing);
