@@ -206,6 +206,8 @@ private:
   bool
   untangle ()
   {
+    if (loops_.empty () && vertices_.found.empty ())
+      return false;
     std::vector<Triangle> triangles = triangles_;
     std::vector<int> owners (triangles.size (), -1), suspects;
     for (std::size_t i = 0; i < loops_.size (); ++i)
