@@ -40,7 +40,7 @@ const std::vector<BlockPart> &
 partsOfBlock (double support)
 {
   static const std::array<std::vector<BlockPart>, 3> PARTS{makeParts (1), makeParts (2), makeParts (4)};
-  return PARTS[support > 2.5 ? 2 : support > 1.0 ? 1 : 0];
+  return PARTS[support > 1.0 ? 2 : support > 0.4 ? 1 : 0];
 }
 
 GridPoint

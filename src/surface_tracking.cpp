@@ -34,8 +34,9 @@ public:
       std::uint64_t nodes = block.needed & part.nodes;
       if (nodes == 0)
         continue;
-      const double half = 0.5 * (part.side - 1) * grid_.voxelSize (), extent = std::sqrt (3.0) * half;
-      const Eigen::Vector3d center = grid_.position (block.first + part.first).array () + half;
+      Eigen::Vector3d center;
+      double extent = 0.0;
+      findBall (block, nodes, center, extent);
       if (worker.block.gather (center, extent))
         nodes = evaluateTogether (worker.block, nodes, block);
       if (nodes == 0)
@@ -52,6 +53,23 @@ private:
   positionOf (const GridBlock &block, int node) const
   {
     return grid_.position (SparseGrid::pointAt (block, node));
+  }
+
+  /** \brief A ball around some nodes of a block. */
+  void
+  findBall (const GridBlock &block, std::uint64_t nodes, Eigen::Vector3d &center, double &extent) const
+  {
+    Eigen::Array3i low (3, 3, 3), high (0, 0, 0);
+    for (; nodes != 0; nodes &= nodes - 1)
+    {
+      const int node = __builtin_ctzll (nodes);
+      const Eigen::Array3i at (node & 3, (node >> 2) & 3, node >> 4);
+      low = low.min (at);
+      high = high.max (at);
+    }
+    const Eigen::Vector3d middle = 0.5 * (low + high).cast<double> ().matrix ();
+    center = grid_.position (block.first) + grid_.voxelSize () * middle;
+    extent = 0.5 * grid_.voxelSize () * (high - low).cast<double> ().matrix ().norm ();
   }
 
   /** \brief Evaluates what is far from sharp surfaces; returns the nodes that want LocalField. */
@@ -308,6 +326,9 @@ SurfaceTracker::seedFromNodes ()
 bool
 SurfaceTracker::findCellNear (const GridPoint &cell, GridPoint &found) const
 {
+  found = cell;
+  if (grid_.isActive (cell))
+    return true;
   for (const int dx : {0, -1, 1})
     for (const int dy : {0, -1, 1})
       for (const int dz : {0, -1, 1})
@@ -325,15 +346,23 @@ SurfaceTracker::seedFromProjections ()
 {
   const auto &positions = field_.surfacePositions ();
   cells_of_nodes_.assign (positions.size (), {NO_CELL, 0, 0});
+  // In the order of the grid, as in seedFromNodes ().
+  const std::vector<std::uint32_t> &order = field_.nodeTable ().grid->index ();
+  parallelRanges (order.size (), options_.threads,
+                  [&] (std::size_t first, std::size_t last)
+                  {
+                    for (std::size_t i = first; i < last; ++i)
+                    {
+                      const GridPoint cell = grid_.cellOf (positions[order[i]].cast<double> ());
+                      GridPoint found{};
+                      if (findCellNear (cell, found))
+                        cells_of_nodes_[order[i]] = found;
+                    }
+                  });
   std::vector<std::size_t> away;
   for (std::size_t i = 0; i < positions.size (); ++i)
-  {
-    GridPoint found{};
-    if (findCellNear (grid_.cellOf (positions[i].cast<double> ()), found))
-      cells_of_nodes_[i] = found;
-    else
+    if (cells_of_nodes_[i].x == NO_CELL)
       away.push_back (i);
-  }
   std::vector<Eigen::Vector3d> feet (away.size ());
   std::vector<char> has_foot (away.size (), 0);
   parallelFor (
