@@ -134,4 +134,29 @@ TEST_F (BlockFieldTest, AgreesWithTheDefinitionForEveryInstructionSetBasisAndCon
         }
 }
 
+/** \brief There all nodes of the support lie near its rim, and their weights are what floats leave of differences. */
+TEST_F (BlockFieldTest, AgreesWithTheDefinitionFarFromTheNodes)
+{
+  const auto field = shapes::field (wavySheet (), optionsOf (Order::SPHERICAL, 20));
+  const double far = 3.0 * field->typicalRadius ();
+  std::size_t engines = 0;
+  const erkpa::lanes::Engine *const *engine = erkpa::lanes::engines (engines);
+  for (std::size_t e = 0; e < engines; ++e)
+  {
+    BlockField block (*field, *engine[e]);
+    LocalField local (*field);
+    for (int i = 0; i < 200; ++i)
+    {
+      const Vector3d node = field->points ().positions[static_cast<std::size_t> (10 * i)].cast<double> ();
+      const Vector3d x = node + far * (i % 2 == 0 ? 1.0 : -1.0) * Vector3d::UnitZ ();
+      ASSERT_TRUE (block.gather (x, 0.0));
+      block.addPoint (x);
+      block.evaluate (false);
+      local.gather (x, 0.0);
+      const double value = local.value (x);
+      EXPECT_NEAR (block.value (0), value, 2e-3 * local.support ().radius ()) << engine[e]->name;
+    }
+  }
+}
+
 } // namespace
