@@ -138,7 +138,7 @@ TEST_F (BlockFieldTest, AgreesWithTheDefinitionForEveryInstructionSetBasisAndCon
 TEST_F (BlockFieldTest, AgreesWithTheDefinitionFarFromTheNodes)
 {
   const auto field = shapes::field (wavySheet (), optionsOf (Order::SPHERICAL, 20));
-  const double far = 3.0 * field->typicalRadius ();
+  const double far = 10.0 * field->typicalRadius ();
   std::size_t engines = 0;
   const erkpa::lanes::Engine *const *engine = erkpa::lanes::engines (engines);
   for (std::size_t e = 0; e < engines; ++e)
