@@ -84,7 +84,7 @@ parallelFor (std::size_t count, int threads, MakeWorkerT make_worker, WorkT work
     workers.push_back (make_worker ());
 
   const std::size_t chunk =
-      std::clamp<std::size_t> (count / (8 * static_cast<std::size_t> (std::max (1, thread_count))), 1, 64);
+      std::clamp<std::size_t> (count / (8 * static_cast<std::size_t> (std::max (1, thread_count))), 1, 4);
   std::atomic<std::size_t> next{0};
   runThreads (thread_count,
               [&] (int thread)
