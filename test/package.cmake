@@ -13,7 +13,7 @@ function(erkpa_add_build_test name source test_command)
     --build-generator ${CMAKE_GENERATOR}
     --build-options -DCMAKE_CXX_COMPILER=${CMAKE_CXX_COMPILER} -DCMAKE_BUILD_TYPE=Release ${ARGN}
     --test-command ${test_command})
-  set_tests_properties(package.${name} PROPERTIES TIMEOUT 1200 SKIP_REGULAR_EXPRESSION "consumer: skipped")
+  set_tests_properties(package.${name} PROPERTIES TIMEOUT 2400 SKIP_REGULAR_EXPRESSION "consumer: skipped")
 endfunction()
 
 add_test(NAME package.install
@@ -27,7 +27,7 @@ erkpa_add_build_test(consumer_avx2 ${CMAKE_CURRENT_SOURCE_DIR}/consumer consumer
 add_test(NAME package.consumer_pkg_config
   COMMAND ${CMAKE_CURRENT_SOURCE_DIR}/consumer/pkg_config.sh ${ERKPA_STAGE}/${CMAKE_INSTALL_LIBDIR}/pkgconfig
           ${CMAKE_CURRENT_BINARY_DIR}/package/pkg_config ${CMAKE_CXX_COMPILER})
-set_tests_properties(package.consumer_pkg_config PROPERTIES TIMEOUT 1200)
+set_tests_properties(package.consumer_pkg_config PROPERTIES TIMEOUT 2400)
 set_tests_properties(package.consumer package.consumer_avx2 package.consumer_pkg_config
   PROPERTIES FIXTURES_REQUIRED stage)
 
