@@ -3,9 +3,11 @@
 
 #include <erkpa/face_of_points.h>
 
+#include "node_table.h"
+#include "parallel_collect.h"
+
 #include <algorithm>
 #include <cmath>
-#include <map>
 #include <utility>
 
 namespace erkpa
@@ -15,7 +17,7 @@ namespace
 {
 
 NeighborSearch::ConstPtr
-searchOf (const std::vector<Meeting> &meetings)
+searchOf (const std::vector<Meeting> &meetings, int threads)
 {
   if (meetings.empty ())
     return nullptr;
@@ -23,7 +25,7 @@ searchOf (const std::vector<Meeting> &meetings)
   positions.reserve (meetings.size ());
   for (const Meeting &meeting : meetings)
     positions.push_back (meeting.position);
-  return makeKdTreeSearch (positions);
+  return makeGridSearch (positions, threads);
 }
 
 } // namespace
@@ -39,16 +41,16 @@ separatesFaces (const SharpSurface &surface)
 
 std::shared_ptr<const FaceMap>
 FaceMap::make (const OrientedPoints &points, const NeighborSearch &search,
-               const std::vector<SharpSurface::ConstPtr> &surfaces, double spacing)
+               const std::vector<SharpSurface::ConstPtr> &surfaces, double spacing, int threads)
 {
   const std::shared_ptr<FaceMap> map (new FaceMap);
   map->addSurfaces (points, surfaces);
   if (map->meetings_.empty ())
     return nullptr;
-  map->assignNodes (points, spacing);
-  map->search_ = searchOf (map->meetings_);
-  map->findJoints (points, search, spacing);
-  map->search_ = searchOf (map->meetings_);
+  map->assignNodes (points, spacing, threads);
+  map->search_ = searchOf (map->meetings_, threads);
+  map->findJoints (points, search, spacing, threads);
+  map->search_ = searchOf (map->meetings_, threads);
   return map;
 }
 
@@ -80,9 +82,8 @@ FaceMap::addSurfaces (const OrientedPoints &points, const std::vector<SharpSurfa
 
 /** \brief A node is of the face of the nearest point that looks its way. */
 void
-FaceMap::assignNodes (const OrientedPoints &points, double spacing)
+FaceMap::assignNodes (const OrientedPoints &points, double spacing, int threads)
 {
-  constexpr int CANDIDATES = 6;
   constexpr double NEAR = 2.0;         // spacings
   constexpr float LEAST_COSINE = 0.7f; // 45 degrees
   std::vector<Eigen::Vector3f> positions, normals;
@@ -96,69 +97,82 @@ FaceMap::assignNodes (const OrientedPoints &points, double spacing)
     normals.insert (normals.end (), face.normals.begin (), face.normals.end ());
     owners.resize (positions.size (), static_cast<int> (f));
   }
-  const NeighborSearch::ConstPtr search = makeKdTreeSearch (positions);
-  std::vector<int> found;
-  std::vector<float> squared;
+  const NeighborSearch::ConstPtr search = makeGridSearch (positions, threads);
   faces_.assign (points.size (), -1);
-  for (std::size_t i = 0; i < points.size (); ++i)
+  const auto face_at = [&] (Found &found, std::size_t i)
   {
-    search->nearestK (points.positions[i], CANDIDATES, found, squared);
-    double nearest = NEAR * spacing;
-    for (std::size_t c = 0; c < found.size (); ++c)
+    search->withinRadius (points.positions[i], NEAR * spacing, found.nodes, found.squared);
+    std::pair<float, int> nearest{HUGE_VALF, -1};
+    for (std::size_t c = 0; c < found.nodes.size (); ++c)
     {
-      const auto candidate = static_cast<std::size_t> (found[c]);
-      const double distance = std::sqrt (static_cast<double> (squared[c]));
-      if (distance < nearest && points.normals[i].dot (normals[candidate]) > LEAST_COSINE)
-      {
-        nearest = distance;
-        faces_[i] = owners[candidate];
-      }
+      const auto candidate = static_cast<std::size_t> (found.nodes[c]);
+      if (points.normals[i].dot (normals[candidate]) > LEAST_COSINE)
+        nearest = std::min (nearest, {found.squared[c], owners[candidate]});
     }
-  }
+    return nearest.second;
+  };
+  parallelFor (
+      points.size (), threads, [] { return Found (); },
+      [&] (Found &found, std::size_t i) { faces_[i] = face_at (found, i); });
 }
 
 /** \brief Neighbours on two faces that nothing keeps apart where they are join the faces. */
 void
-FaceMap::findJoints (const OrientedPoints &points, const NeighborSearch &search, double spacing)
+FaceMap::findJoints (const OrientedPoints &points, const NeighborSearch &search, double spacing, int threads)
 {
-  constexpr double NEIGHBORS = 4.0;     // spacings
-  constexpr float BEND = 0.1f;          // of the distance: a larger step is that between two sheets
-  constexpr float LEAST_COSINE = 0.87f; // 30 degrees
-  std::vector<int> found, near;
-  std::vector<float> squared;
-  std::vector<Meeting> joints;
-  for (std::size_t i = 0; i < points.size (); ++i)
-  {
-    if (faces_[i] < 0)
-      continue;
-    search.withinRadius (points.positions[i], NEIGHBORS * spacing, found, squared);
-    std::sort (found.begin (), found.end ());
-    for (const int j : found)
-    {
-      const int face = faces_[i], other = faces_[static_cast<std::size_t> (j)];
-      const float turn = points.normals[i].dot (points.normals[static_cast<std::size_t> (j)]);
-      if (j <= static_cast<int> (i) || other < 0 || face == other)
-        continue;
-      const Eigen::Vector3f way = points.positions[static_cast<std::size_t> (j)] - points.positions[i];
-      const float step = 0.5f * std::abs (way.dot (points.normals[i] + points.normals[static_cast<std::size_t> (j)]));
-      if (turn < LEAST_COSINE || step > BEND * way.norm ())
-        continue;
-      const Eigen::Vector3f middle = 0.5f * (points.positions[i] + points.positions[static_cast<std::size_t> (j)]);
-      meetingsNear (middle.cast<double> (), 0.0, near);
-      const auto keeps_apart = [&] (int m)
+  constexpr std::size_t STRETCH = 256;
+  auto joints = parallelCollect<Meeting> (
+      points.size (), threads,
+      [&] (std::size_t first, std::size_t last, std::vector<Meeting> &found)
       {
-        const Meeting &meeting = meetings_[static_cast<std::size_t> (m)];
-        return meeting.face == std::min (face, other) && meeting.other == std::max (face, other) &&
-               (meeting.position - middle).norm () < NEIGHBORS * spacing;
-      };
-      if (std::none_of (near.begin (), near.end (), keeps_apart))
-        joints.push_back ({middle, std::min (face, other), std::max (face, other), -1, 0.0});
-    }
-  }
+        Found near;
+        for (std::size_t i = first; i < last; ++i)
+          if (faces_[i] >= 0)
+            addJoints (points, search, spacing, i, near, found);
+      },
+      STRETCH);
   // A joint holds as far as the separations do: around the end of a crease the nearer of them decides.
   for (Meeting &joint : joints)
     joint.reach = largest_reach_;
   meetings_.insert (meetings_.end (), joints.begin (), joints.end ());
+}
+
+void
+FaceMap::addJoints (const OrientedPoints &points, const NeighborSearch &search, double spacing, std::size_t i,
+                    Found &near, std::vector<Meeting> &joints) const
+{
+  constexpr double NEIGHBORS = 4.0;     // spacings
+  constexpr float BEND = 0.1f;          // of the distance: a larger step is that between two sheets
+  constexpr float LEAST_COSINE = 0.87f; // 30 degrees
+  search.withinRadius (points.positions[i], NEIGHBORS * spacing, near.nodes, near.squared);
+  const auto is_other = [&] (int j)
+  {
+    const int other = faces_[static_cast<std::size_t> (j)];
+    return j > static_cast<int> (i) && other >= 0 && other != faces_[i];
+  };
+  near.nodes.erase (std::remove_if (near.nodes.begin (), near.nodes.end (), [&] (int j) { return !is_other (j); }),
+                    near.nodes.end ());
+  std::sort (near.nodes.begin (), near.nodes.end ());
+  std::vector<int> meetings;
+  for (const int neighbor : near.nodes)
+  {
+    const auto j = static_cast<std::size_t> (neighbor);
+    const Eigen::Vector3f way = points.positions[j] - points.positions[i];
+    const float step = 0.5f * std::abs (way.dot (points.normals[i] + points.normals[j]));
+    if (points.normals[i].dot (points.normals[j]) < LEAST_COSINE || step > BEND * way.norm ())
+      continue;
+    const Eigen::Vector3f middle = 0.5f * (points.positions[i] + points.positions[j]);
+    const int face = std::min (faces_[i], faces_[j]), other = std::max (faces_[i], faces_[j]);
+    meetingsNear (middle.cast<double> (), 0.0, meetings);
+    const auto keeps_apart = [&] (int m)
+    {
+      const Meeting &meeting = meetings_[static_cast<std::size_t> (m)];
+      return meeting.face == face && meeting.other == other &&
+             (meeting.position - middle).norm () < NEIGHBORS * spacing;
+    };
+    if (std::none_of (meetings.begin (), meetings.end (), keeps_apart))
+      joints.push_back ({middle, face, other, -1, 0.0});
+  }
 }
 
 void

@@ -35,7 +35,7 @@ public:
    */
   static std::shared_ptr<const FaceMap>
   make (const OrientedPoints &points, const NeighborSearch &search, const std::vector<SharpSurface::ConstPtr> &surfaces,
-        double spacing);
+        double spacing, int threads);
 
   int
   faceOf (int node) const
@@ -60,11 +60,22 @@ private:
   void
   addSurfaces (const OrientedPoints &points, const std::vector<SharpSurface::ConstPtr> &surfaces);
 
-  void
-  assignNodes (const OrientedPoints &points, double spacing);
+  /** \brief Scratch memory of a query. */
+  struct Found
+  {
+    std::vector<int> nodes;
+    std::vector<float> squared;
+  };
 
   void
-  findJoints (const OrientedPoints &points, const NeighborSearch &search, double spacing);
+  assignNodes (const OrientedPoints &points, double spacing, int threads);
+
+  void
+  findJoints (const OrientedPoints &points, const NeighborSearch &search, double spacing, int threads);
+
+  void
+  addJoints (const OrientedPoints &points, const NeighborSearch &search, double spacing, std::size_t i, Found &near,
+             std::vector<Meeting> &joints) const;
 
   std::vector<int> faces_; // of the nodes, by place in known_faces_
   std::vector<SharpSurface::ConstPtr> known_faces_;

@@ -63,4 +63,11 @@ makePointGrid (const std::vector<Eigen::Vector3f> &positions, int threads, doubl
   return grid;
 }
 
+NeighborSearch::ConstPtr
+makeGridSearch (const std::vector<Eigen::Vector3f> &positions, int threads)
+{
+  double spacing = 0.0;
+  return makeGridSearch (makePointGrid (positions, threads, spacing));
+}
+
 } // namespace erkpa

@@ -27,4 +27,8 @@ struct NodeTable
 std::shared_ptr<const PointGrid>
 makePointGrid (const std::vector<Eigen::Vector3f> &positions, int threads, double &spacing);
 
+/** \brief A search by such a grid over copies of any points, at least one. */
+NeighborSearch::ConstPtr
+makeGridSearch (const std::vector<Eigen::Vector3f> &positions, int threads);
+
 } // namespace erkpa

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "normal_sharpening.h"
 
+#include "node_table.h"
 #include "normal_smoothing.h"
 #include "threads.h"
 
@@ -8,6 +9,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <utility>
 
 namespace erkpa
@@ -41,12 +43,11 @@ angleBetween (const Eigen::Vector3f &a, const Eigen::Vector3f &b)
 class Sharpener
 {
 public:
-  Sharpener (const NeighborSearch &search, double spacing, int k, int threads, const OrientedPoints &points)
-      : search_ (search), spacing_ (spacing), threads_ (threads), points_ (points)
+  Sharpener (const NeighborSearch &search, const NormalScale &scale, int threads, const OrientedPoints &points)
+      : search_ (search), spacing_ (scale.spacing), threads_ (threads), points_ (points),
+        tolerance_ (scale.noise + 0.01 * scale.spacing),
+        k_ (static_cast<int> (scale.k * (1.0 + std::min (0.5, 5.0 * scale.noise / scale.spacing))))
   {
-    const double noise = positionNoise (search, spacing, threads, points);
-    tolerance_ = noise + 0.01 * spacing;
-    k_ = static_cast<int> (k * (1.0 + std::min (0.5, 5.0 * noise / spacing)));
   }
 
   /** \brief The new normals. */
@@ -66,6 +67,17 @@ public:
       takeNormals ();
     }
     return normals_;
+  }
+
+  /** \brief How far the neighbours of a point are from a smooth surface, in tolerances; 0 where they make one. */
+  double
+  roughness (Neighborhood &near, std::size_t i) const
+  {
+    gather (near, i, k_);
+    if (near.nodes.size () < FEWEST)
+      return 0.0;
+    const HeightFit fit = fitAll (near, i);
+    return isSmooth (fit) ? 0.0 : fit.deviation () / tolerance_;
   }
 
   /** \brief After run(): how far the given normal of a point leans to the other face of an edge it is close to.
@@ -133,18 +145,30 @@ private:
     return std::max (tolerance_, std::abs (deviation));
   }
 
+  HeightFit
+  fitAll (const Neighborhood &near, std::size_t i) const
+  {
+    return {near.positions, near.weights, points_.normals[i],
+            spacing_,       tolerance_,   near.nodes.size () >= FOR_A_QUADRIC};
+  }
+
+  bool
+  isSmooth (const HeightFit &fit) const
+  {
+    return fit.deviation () < 1.1 * tolerance_;
+  }
+
   /** \brief The fit of a point's neighbours: of all of them where that is a smooth surface, else of fewer if better. */
   void
   fitAround (Neighborhood &near, std::size_t i)
   {
     gather (near, i, k_);
-    const std::size_t count = near.nodes.size ();
-    if (count < FEWEST)
+    if (near.nodes.size () < FEWEST)
       return; // keeps its normal
     const Eigen::Vector3f &side = points_.normals[i];
     HeightFit &best = fits_[i];
-    best = HeightFit (near.positions, near.weights, side, spacing_, tolerance_, count >= FOR_A_QUADRIC);
-    smooth_[i] = best.deviation () < 1.1 * tolerance_;
+    best = fitAll (near, i);
+    smooth_[i] = isSmooth (best);
     for (const double share : {0.6, 0.4})
     {
       const auto fewer = static_cast<std::size_t> (share * k_);
@@ -252,43 +276,102 @@ private:
   const double spacing_;
   const int threads_;
   const OrientedPoints &points_;
-  double tolerance_ = 0.0;               // of what counts as lying on a surface, input's unit of length
-  int k_ = 0;                            // neighbours of a fit
+  const double tolerance_;               // of what counts as lying on a surface, input's unit of length
+  const int k_;                          // neighbours of a fit
   std::vector<HeightFit> fits_, chosen_; // of each point: around it, and that it lies on; no weight where unknown
   std::vector<char> smooth_;             // whether the former is the latter
   std::vector<Eigen::Vector3f> normals_; // new ones
 };
 
+/** \brief Pieces of a cloud around points that are on no smooth surface. */
+struct RoughPieces
+{
+  OrientedPoints points;
+  std::vector<std::size_t> middle; ///< those of the points with all of their surroundings
+};
+
+/** \brief Some points of a cloud that are on no smooth surface; where noise looks like edges, rather those at edges. */
+std::vector<std::size_t>
+findRough (const NeighborSearch &search, const NormalScale &scale, int threads, const OrientedPoints &points)
+{
+  const std::vector<std::size_t> sample = spreadSample (points.size ());
+  const Sharpener sharpener (search, scale, threads, points);
+  std::vector<std::pair<double, std::size_t>> roughness (sample.size ());
+  parallelFor (
+      sample.size (), threads, [] { return Neighborhood (); },
+      [&] (Neighborhood &near, std::size_t s) {
+        roughness[s] = {sharpener.roughness (near, sample[s]), sample[s]};
+      });
+  std::sort (roughness.rbegin (), roughness.rend ());
+  const auto smooth =
+      std::find_if (roughness.begin (), roughness.end (), [] (const auto &r) { return r.first == 0.0; });
+  std::vector<std::size_t> rough;
+  for (auto r = roughness.begin (); r < roughness.begin () + (smooth - roughness.begin () + 1) / 2; ++r)
+    rough.push_back (r->second);
+  std::sort (rough.begin (), rough.end ());
+  return rough;
+}
+
+RoughPieces
+gatherPieces (const NeighborSearch &search, const OrientedPoints &points, const std::vector<std::size_t> &rough, int k)
+{
+  constexpr std::size_t PIECES = 32;
+  constexpr int AROUND = 5; // times the neighbours of a fit
+  const std::size_t step = std::max<std::size_t> (1, rough.size () / PIECES);
+  std::map<int, bool> is_middle;
+  std::vector<int> found;
+  std::vector<float> squared;
+  for (std::size_t r = 0; r < rough.size (); r += step)
+  {
+    search.nearestK (points.positions[rough[r]], AROUND * k, found, squared);
+    for (const int node : found)
+      is_middle.emplace (node, false);
+    search.nearestK (points.positions[rough[r]], k, found, squared);
+    for (const int node : found)
+      is_middle[node] = true;
+  }
+  RoughPieces pieces;
+  for (const auto &[node, middle] : is_middle)
+  {
+    if (middle)
+      pieces.middle.push_back (pieces.points.size ());
+    pieces.points.positions.push_back (points.positions[static_cast<std::size_t> (node)]);
+    pieces.points.normals.push_back (points.normals[static_cast<std::size_t> (node)]);
+  }
+  return pieces;
+}
+
 } // namespace
 
 void
-sharpenNormals (const NeighborSearch &search, double spacing, int k, int threads, OrientedPoints &points)
+sharpenNormals (const NeighborSearch &search, const NormalScale &scale, int threads, OrientedPoints &points)
 {
-  Sharpener sharpener (search, spacing, k, threads, points);
+  Sharpener sharpener (search, scale, threads, points);
   points.normals = sharpener.run ();
 }
 
 bool
-areNormalsSmeared (const NeighborSearch &search, double spacing, int k, int threads, const OrientedPoints &points)
+areNormalsSmeared (const NeighborSearch &search, const NormalScale &scale, int threads, const OrientedPoints &points)
 {
   constexpr std::size_t ENOUGH = 20;
   // Of PCA at edges, 0.25 to 0.35 and more with noise; of exact normals 0, but 0.3 where much noise feigns edges.
-  const double smeared = std::min (0.38, 0.2 + 0.6 * positionNoise (search, spacing, threads, points) / spacing);
-  Sharpener sharpener (search, spacing, k, threads, points);
+  const double smeared = std::min (0.38, 0.2 + 0.6 * scale.noise / scale.spacing);
+  const std::vector<std::size_t> rough = findRough (search, scale, threads, points);
+  if (rough.empty ())
+    return false;
+  const RoughPieces pieces = gatherPieces (search, points, rough, scale.k);
+  const NeighborSearch::ConstPtr search_in_pieces = makeGridSearch (pieces.points.positions, threads);
+  Sharpener sharpener (*search_in_pieces, scale, threads, pieces.points);
   sharpener.run ();
-  std::vector<double> lean (points.size ());
-  std::vector<char> known (points.size ());
-  sharpener.forEachPoint (
-      [&] (Neighborhood &near, std::size_t i)
-      {
-        bool is_known = false;
-        lean[i] = sharpener.leanOf (near, i, is_known);
-        known[i] = is_known;
-      });
   std::vector<double> leans;
-  for (std::size_t i = 0; i < points.size (); ++i)
-    if (known[i])
-      leans.push_back (lean[i]);
+  Neighborhood near;
+  for (const std::size_t i : pieces.middle)
+  {
+    bool is_known = false;
+    const double lean = sharpener.leanOf (near, i, is_known);
+    if (is_known)
+      leans.push_back (lean);
+  }
   if (leans.size () < ENOUGH)
     return false;
   const auto middle = leans.begin () + static_cast<std::ptrdiff_t> (leans.size () / 2);

@@ -39,18 +39,6 @@ struct Query
   std::vector<float> squared;
 };
 
-/** \brief Nodes spread over the cloud: enough for a quantile that does not depend on which they are. */
-std::vector<std::size_t>
-sampleOf (std::size_t size)
-{
-  constexpr std::size_t COUNT = 5000;
-  const std::size_t step = std::max<std::size_t> (1, size / COUNT);
-  std::vector<std::size_t> sample;
-  for (std::size_t i = 0; i < size; i += step)
-    sample.push_back (i);
-  return sample;
-}
-
 /** \brief The value that a share of the values stays below; they may be negative where unknown and then do not count.
  */
 double
@@ -100,6 +88,17 @@ normalResidual (const OrientedPoints &points, std::size_t i, double spacing, con
 }
 
 } // namespace
+
+std::vector<std::size_t>
+spreadSample (std::size_t size)
+{
+  constexpr std::size_t COUNT = 5000;
+  const std::size_t step = std::max<std::size_t> (1, size / COUNT);
+  std::vector<std::size_t> sample;
+  for (std::size_t i = 0; i < size; i += step)
+    sample.push_back (i);
+  return sample;
+}
 
 HeightFit::HeightFit (const std::vector<Eigen::Vector3f> &points, const std::vector<float> &weights,
                       const Eigen::Vector3f &side, double spacing, double noise, bool curved)
@@ -217,7 +216,7 @@ normalNoise (const NeighborSearch &search, double spacing, int threads, const Or
 {
   constexpr int NEIGHBORS = 10;
   constexpr double MEDIAN = 0.8326; // of the angle, where its root mean square is 1: sqrt (ln 2)
-  const std::vector<std::size_t> sample = sampleOf (points.size ());
+  const std::vector<std::size_t> sample = spreadSample (points.size ());
   std::vector<double> angles (sample.size ());
   parallelFor (
       sample.size (), threads, [] { return Query (); },
@@ -234,7 +233,7 @@ positionNoise (const NeighborSearch &search, double spacing, int threads, const 
 {
   constexpr int NEIGHBORS = 18;
   constexpr double SHARE = 0.3, EXPECTED = 0.88; // quantile of the deviation's estimate with 12 degrees of freedom
-  const std::vector<std::size_t> sample = sampleOf (points.size ());
+  const std::vector<std::size_t> sample = spreadSample (points.size ());
   std::vector<double> deviations (sample.size ());
   parallelFor (
       sample.size (), threads, [] { return Query (); },

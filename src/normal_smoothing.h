@@ -6,6 +6,7 @@
 
 #include <Eigen/Core>
 
+#include <cstddef>
 #include <vector>
 
 namespace erkpa
@@ -67,6 +68,10 @@ private:
   float deviation_ = 0.0f;
   float weight_ = 0.0f;
 };
+
+/** \brief Some numbers below \a size, evenly spread: enough for a quantile that does not depend on which they are. */
+std::vector<std::size_t>
+spreadSample (std::size_t size);
 
 /** \brief Bilateral filter of normals (Zheng et al. 2011, on points): means over neighbours that are near and alike.
  * \param[in] spacing measureSpacing: the weight falls with the distance as a Gaussian of 1.5 spacings

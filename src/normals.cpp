@@ -75,9 +75,10 @@ refineNormals (const NeighborSearch &search, bool estimated, int threads, Orient
   RefinedNormals refined;
   if (!(spacing > 0.0))
     return refined;
-  refined.sharpened = estimated || areNormalsSmeared (search, spacing, k, threads, points);
+  const NormalScale scale{spacing, positionNoise (search, spacing, threads, points), k};
+  refined.sharpened = estimated || areNormalsSmeared (search, scale, threads, points);
   if (refined.sharpened)
-    sharpenNormals (search, spacing, k, threads, points);
+    sharpenNormals (search, scale, threads, points);
   refined.smoothed = positionNoise (search, spacing, threads, points) > NOISY_POSITION * spacing ||
                      (!refined.sharpened && normalNoise (search, spacing, threads, points) > NOISY);
   if (refined.smoothed)

@@ -157,10 +157,15 @@ void
 PointGrid::nearestK (const Eigen::Vector3d &x, int k, std::vector<std::pair<float, int>> &found) const
 {
   constexpr double EVERYWHERE = 1e18; // its square is still a float
+  constexpr double PER_CELL = 16.0;   // points of a surface within a cell's side: see makePointGrid ()
+  constexpr double MARGIN = 1.15;
   const auto wanted = std::min (static_cast<std::size_t> (k), size ());
-  double reach = cell_;
+  double reach = cell_ * std::max (0.5, std::sqrt (static_cast<double> (k) / PER_CELL));
   for (withinRadius (x, reach, found); found.size () < wanted && reach < EVERYWHERE; withinRadius (x, reach, found))
-    reach *= 2.0;
+  {
+    const double share = static_cast<double> (wanted) / std::max (1.0, static_cast<double> (found.size ()));
+    reach *= std::clamp (MARGIN * std::sqrt (share), 1.3, 4.0);
+  }
   if (found.size () <= wanted)
     return;
   std::nth_element (found.begin (), found.begin () + static_cast<std::ptrdiff_t> (wanted), found.end ());

@@ -164,7 +164,7 @@ private:
   std::array<std::vector<float>, 3> coordinates_;
 };
 
-/** \brief A search by a grid: quick to make, for the few queries that measure a cloud. */
+/** \brief A search by a grid: quick to make and to ask near the points. */
 NeighborSearch::ConstPtr
 makeGridSearch (std::shared_ptr<const PointGrid> grid);
 

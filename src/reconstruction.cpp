@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <erkpa/reconstruction.h>
 
+#include "node_table.h"
 #include "support.h"
 #include "support_size.h"
 #include "text.h"
@@ -136,7 +137,7 @@ makeField (const std::shared_ptr<const OrientedPoints> &points, const NeighborSe
 
 /** \brief Where sharp edges are known or sought, normals must be those of one face each; then find the edges. */
 Outcome
-respectSharpEdges (const NeighborSearch &search, Options &options, OrientedPoints &points, Report &report)
+respectSharpEdges (Options &options, OrientedPoints &points, Report &report)
 {
   std::vector<SharpSurface::ConstPtr> &surfaces = options.field.sharp_surfaces;
   const SharpOptions &sharp = options.sharp;
@@ -144,16 +145,17 @@ respectSharpEdges (const NeighborSearch &search, Options &options, OrientedPoint
     return {};
   const int threads = options.polygonizer.threads;
   const std::vector<Eigen::Vector3f> given = points.normals;
+  const NeighborSearch::ConstPtr search = makeGridSearch (points.positions, threads);
   if (options.normals.sharpen)
   {
     const StageClock clock (report.seconds_normals);
-    report.normals = refineNormals (search, report.points.without_normal > 0, threads, points);
+    report.normals = refineNormals (*search, report.points.without_normal > 0, threads, points);
   }
   const StageClock clock (report.seconds_sharp);
   std::vector<SharpSurface::ConstPtr> found, between;
   Outcome outcome;
   if (sharp.automatic)
-    outcome = findSharpSurfaces (points, search, sharp, threads, found);
+    outcome = findSharpSurfaces (points, *search, sharp, threads, found);
   if (outcome.ok () && !sharp.faces.empty ())
     outcome = sharpEdgesFromFaces (points, sharp.faces, sharp.face_tolerance, between);
   // Faces are told apart by smoothed normals, fitted by those given: fits average noise without looking over edges.
@@ -190,7 +192,7 @@ buildField (const PointView &view, const Options &options, const SearchFactory &
       return outcome;
   }
   Options complete = options;
-  outcome = respectSharpEdges (*search, complete, *points, report);
+  outcome = respectSharpEdges (complete, *points, report);
   return outcome.ok () ? makeField (points, search, complete, field, report, progress) : outcome;
 }
 

@@ -4,6 +4,7 @@
 
 #include "face_segmentation.h"
 #include "mesh_graph.h"
+#include "node_table.h"
 #include "noise.h"
 #include "normal_smoothing.h"
 #include "text.h"
@@ -37,7 +38,7 @@ chainSeparations (const std::vector<Separation> &separations, double step)
   DisjointSets chains (separations.size ());
   if (positions.empty ())
     return chains;
-  const NeighborSearch::ConstPtr search = makeKdTreeSearch (positions);
+  const NeighborSearch::ConstPtr search = makeGridSearch (positions, 1);
   std::vector<int> found;
   std::vector<float> squared;
   for (std::size_t i = 0; i < positions.size (); ++i)
@@ -229,28 +230,22 @@ gatherStretches (const OrientedPoints &points, const NeighborSearch &search, con
 
 /** \brief Marks the nodes that fits near the stretches can reach: the others need no face. */
 std::vector<char>
-markNear (const OrientedPoints &points, const std::vector<Stretch> &stretches)
+markNear (const OrientedPoints &points, const NeighborSearch &search, const std::vector<Stretch> &stretches)
 {
-  constexpr float FITS = 3.5f; // in reaches, which are about a support radius each
-  std::vector<Eigen::Vector3f> places;
-  float reach = 0.0f;
+  constexpr double FITS = 3.5; // in reaches, which are about a support radius each
+  double reach = 0.0;
   for (const Stretch &stretch : stretches)
-  {
-    reach = std::max (reach, static_cast<float> (stretch.reach));
-    for (const Eigen::Vector3d &place : stretch.places)
-      places.emplace_back ((place - points.origin).cast<float> ());
-  }
+    reach = std::max (reach, stretch.reach);
   std::vector<char> is_near (points.size (), 0);
-  if (places.empty ())
-    return is_near;
-  const NeighborSearch::ConstPtr search = makeKdTreeSearch (places);
-  std::vector<int> nearest;
+  std::vector<int> found;
   std::vector<float> squared;
-  for (std::size_t i = 0; i < points.size (); ++i)
-  {
-    search->nearestK (points.positions[i], 1, nearest, squared);
-    is_near[i] = squared.front () < FITS * FITS * reach * reach ? 1 : 0;
-  }
+  for (const Stretch &stretch : stretches)
+    for (const Eigen::Vector3d &place : stretch.places)
+    {
+      search.withinRadius ((place - points.origin).cast<float> (), FITS * reach, found, squared);
+      for (const int node : found)
+        is_near[static_cast<std::size_t> (node)] = 1;
+    }
   return is_near;
 }
 
@@ -268,7 +263,7 @@ findSharpSurfaces (const OrientedPoints &points, const NeighborSearch &search, c
   const SegmentationOptions segmentation = optionsFor (points, search, options.angle, k, threads);
   const FaceSegmentation found = segmentFaces (points, search, segmentation, threads);
   const std::vector<Stretch> stretches = gatherStretches (points, search, found, segmentation, k);
-  const std::vector<SharpSurface::ConstPtr> faces = makeFaces (points, found, markNear (points, stretches), k);
+  const std::vector<SharpSurface::ConstPtr> faces = makeFaces (points, found, markNear (points, search, stretches), k);
   for (const Stretch &stretch : stretches)
   {
     const auto &face = faces[static_cast<std::size_t> (stretch.face)];

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "noise.h"
-
 #include <erkpa/sharp_edges_from_faces.h>
+
+#include "node_table.h"
+#include "noise.h"
 
 #include <Eigen/LU>
 
@@ -80,7 +81,7 @@ private:
 
 EdgeFinder::EdgeFinder (const OrientedPoints &points, double tolerance) : points_ (points)
 {
-  const NeighborSearch::ConstPtr search = makeKdTreeSearch (points.positions);
+  const NeighborSearch::ConstPtr search = makeGridSearch (points.positions, 1);
   spacing_ = measureSpacing (points.positions, *search);
   tolerance_ = tolerance > 0.0 ? tolerance : 0.5 * spacing_;
   near_ = NEAR * spacing_ + tolerance_;

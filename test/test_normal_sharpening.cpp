@@ -41,7 +41,8 @@ struct Estimated
   void
   sharpen (int threads = 0)
   {
-    erkpa::sharpenNormals (*search, spacing, K, threads, points);
+    erkpa::sharpenNormals (*search, {spacing, erkpa::positionNoise (*search, spacing, threads, points), K}, threads,
+                           points);
   }
 
   /** \brief Share of the normals that are off by more than some degrees. */
@@ -151,7 +152,11 @@ TEST (NormalSharpening, TellsSmearedNormalsFromExactAndFromRandomOnes)
 {
   const Estimated box (shapes::box (6000, {1.0, 0.7, 0.5})), sphere (shapes::sphere (3000));
   const auto areSmeared = [] (const Estimated &shape, const OrientedPoints &points)
-  { return erkpa::areNormalsSmeared (*shape.search, shape.spacing, Estimated::K, 0, points); };
+  {
+    return erkpa::areNormalsSmeared (
+        *shape.search, {shape.spacing, erkpa::positionNoise (*shape.search, shape.spacing, 0, points), Estimated::K}, 0,
+        points);
+  };
   EXPECT_TRUE (areSmeared (box, box.points));
   EXPECT_FALSE (areSmeared (box, box.exact));
   OrientedPoints shaken = box.exact;
