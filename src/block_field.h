@@ -1,13 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "face_groups.h"
-#include "lanes/lanes.h"
-#include "node_table.h"
+#include "block_faces.h"
+#include "block_nodes.h"
+#include "block_points.h"
 
 #include <erkpa/implicit_field.h>
 
-#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <utility>
@@ -16,10 +15,10 @@
 namespace erkpa
 {
 
-/** \brief The field at many points of one ball at once, where no sharp surface is in reach: LocalField's quick double.
+/** \brief The field at many points of one ball at once, where it has no enrichment: LocalField's quick double.
  *
- * Gathers the nodes around a ball from the NodeTable into arrays with the ball's middle as origin and the typical
- * radius as unit, and hands them with the points to the vectors of the processor (lanes.h). One object per thread.
+ * Gathers the nodes around a ball, and hands them with the points to the vectors of the processor (lanes.h), in the
+ * typical radius as unit. One object per thread.
  */
 class BlockField
 {
@@ -34,16 +33,24 @@ public:
   void
   setReach (double share, double offset, double near_enough);
 
+  /** \brief See LocalField::thicken (). */
+  void
+  thicken (double least_wall)
+  {
+    faces_.thicken (least_wall);
+  }
+
   /** \brief Prepare for points within \a extent of \a center (local frame).
    * \return false where the field is none of canEvaluate (), or no nodes are in reach
    */
   bool
   gather (const Eigen::Vector3d &center, double extent);
 
-  /** \brief Whether a point of the ball that was gathered for can be evaluated here: no sharp surface is in its reach.
+  /** \brief Whether a point of the ball that was gathered for can be evaluated here: no sharp surface that enriches the
+   * field is in its reach.
    */
   bool
-  isPlainAt (const Eigen::Vector3d &x) const;
+  canEvaluateAt (const Eigen::Vector3d &x) const;
 
   /** \brief Forget the points, then take up others. */
   void
@@ -55,7 +62,7 @@ public:
   std::size_t
   size () const
   {
-    return count_;
+    return points_.size ();
   }
 
   /** \brief Evaluate f at the points, and ∇f, border offsets and attributes where \a gradients are wanted. */
@@ -66,91 +73,83 @@ public:
   double
   value (std::size_t point) const
   {
-    return unit_ * static_cast<double> (values_[point]);
+    return unit_ * static_cast<double> (points_.values[point]);
   }
 
   bool
   isInReach (std::size_t point) const
   {
-    return in_reach_[point] != 0;
+    return points_.in_reach[point] != 0;
   }
 
   /** \brief Whether value and gradient are as LocalField's; false also where f is undefined. */
   bool
   isSettled (std::size_t point) const
   {
-    return states_[point] == lanes::State::DEFINED;
+    return points_.states[point] == lanes::State::DEFINED;
   }
 
   bool
   isUnsettled (std::size_t point) const
   {
-    return states_[point] == lanes::State::UNSETTLED;
+    return points_.states[point] == lanes::State::UNSETTLED;
   }
 
   Eigen::Vector3d
   gradient (std::size_t point) const
   {
-    return {static_cast<double> (gradients_[0][point]), static_cast<double> (gradients_[1][point]),
-            static_cast<double> (gradients_[2][point])};
+    return {static_cast<double> (points_.gradients[0][point]), static_cast<double> (points_.gradients[1][point]),
+            static_cast<double> (points_.gradients[2][point])};
   }
 
   /** \brief ε. */
   double
   radius (std::size_t point) const
   {
-    return unit_ * static_cast<double> (radii_[point]);
+    return unit_ * static_cast<double> (points_.radii[point]);
   }
 
   double
   borderOffset (std::size_t point) const
   {
-    return static_cast<double> (border_offsets_[point]);
+    return static_cast<double> (points_.border_offsets[point]);
   }
 
   float
   attribute (std::size_t point, std::size_t channel) const
   {
-    return attributes_[channel * attributesStride () + point];
+    return points_.attribute (point, channel);
   }
 
-  /** \brief Face of the nearest node; -1 where the field has no faces. */
+  /** \brief See LocalField::face (); elsewhere that of the nearest node; -1 where the field has no faces. */
   int
   face (std::size_t point) const;
+
+  /** \brief See LocalField::thickening (). */
+  double
+  thickening (std::size_t point) const;
 
   std::size_t
   evaluations () const
   {
-    return evaluations_;
+    return evaluations_ + faces_.evaluations ();
   }
 
   std::size_t
   supportNodes () const
   {
-    return support_nodes_;
+    return support_nodes_ + faces_.supportNodes ();
   }
 
 private:
   void
   gatherSharpSurfaces ();
 
-  double
-  boundOfKth (std::size_t k, double guess) const;
-
   bool
   findReach (const Eigen::Vector3d &center, double extent);
 
   void
-  gatherNodes (const Eigen::Vector3d &center, double reach);
-
-  void
-  copyNodes ();
-
-  void
-  copyAttributes ();
-
-  void
-  resizePoints (std::size_t size);
+  findNodes (const Eigen::Vector3d &center, double reach);
 
   void
   setRadii ();
@@ -158,63 +157,28 @@ private:
   void
   refuseUncovered ();
 
-  lanes::Nodes
-  nodes () const;
-
-  /** \brief Index of a gathered node among the field's points. */
+  /** \brief Place of a point among those where faces are kept apart; -1 elsewhere. */
   int
-  nodeAt (std::size_t i) const
+  placeAtFaces (std::size_t point) const
   {
-    return static_cast<int> (table_->grid->index ()[places_[i]]);
-  }
-
-  /** \brief 0 at a node, 1 and -1 at its off-surface points. */
-  int
-  sideOf (std::size_t value_point) const
-  {
-    return value_point < found_ ? 0 : value_point < 2 * found_ ? 1 : -1;
-  }
-
-  std::size_t
-  padded () const
-  {
-    return (count_ + lanes::MAX_WIDTH - 1) / lanes::MAX_WIDTH * lanes::MAX_WIDTH;
-  }
-
-  std::size_t
-  attributesStride () const
-  {
-    return points_[0].size ();
+    return place_at_faces_[point];
   }
 
   const ImplicitField &field_;
-  const NodeTable *table_; // null: nothing is evaluated here
+  bool can_evaluate_;
   const lanes::Engine &engine_;
-  lanes::Settings settings_{};
-  FaceGroups groups_;
+  double unit_, inverse_unit_; // of the lanes' lengths
+  lanes::Settings settings_;
+  BlockNodes nodes_;
+  BlockPoints points_;
+  BlockFaces faces_;
   bool has_separations_ = false;
+  std::vector<std::uint32_t> at_faces_;                              // points
+  std::vector<int> place_at_faces_;                                  // of every point
   std::vector<std::pair<const SharpSurface *, bool>> near_surfaces_; // and whether it is a plane
-  double unit_, inverse_unit_;                                       // of the lanes' lengths
   Eigen::Vector3d center_ = Eigen::Vector3d::Zero ();
   double center_radius_ = 0.0; // ε there, at most
   double reach_ = 0.0;         // how far around it the nodes are gathered
-
-  // The gathered nodes. Arrays keep their memory from ball to ball.
-  std::size_t found_ = 0, node_count_ = 0; // nodes, value points
-  std::vector<std::uint32_t> places_;      // in the table
-  std::array<std::vector<float>, 3> positions_, normals_;
-  std::vector<float> squared_, lambdas_, confidences_, node_attributes_;
-
-  // The points and what is found there.
-  std::size_t count_ = 0;
-  std::array<std::vector<float>, 3> points_, growths_, gradients_;
-  std::vector<float> bounds_, guesses_, values_, radii_, border_offsets_, attributes_;
-  std::vector<std::uint8_t> in_reach_;
-  std::vector<lanes::State> states_;
-  std::vector<std::uint32_t> nearest_, supports_;
-
-  std::vector<std::uint32_t> list_;
-  std::vector<float> rows_;
   std::size_t evaluations_ = 0, support_nodes_ = 0;
 };
 

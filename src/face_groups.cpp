@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <utility>
 
 namespace erkpa
 {
@@ -33,13 +32,8 @@ FaceGroups::hasSeparationAt (const Eigen::Vector3d &x) const
 }
 
 void
-FaceGroups::assign (const Support &support)
+FaceGroups::listPresent ()
 {
-  face_of_slot_.clear ();
-  if (faces_ == nullptr)
-    return;
-  for (const ValuePoint &point : support.points ())
-    face_of_slot_.push_back (faces_->faceOf (point.node));
   present_ = face_of_slot_;
   std::sort (present_.begin (), present_.end ());
   present_.erase (std::unique (present_.begin (), present_.end ()), present_.end ());
@@ -59,15 +53,15 @@ FaceGroups::findPairs (const Eigen::Vector3d &x)
   for (const int m : near_)
   {
     const Meeting &meeting = faces_->meetings ()[static_cast<std::size_t> (m)];
-    const double distance = (meeting.position.cast<double> () - x).norm ();
-    if (distance > meeting.reach)
+    const double squared = (meeting.position.cast<double> () - x).squaredNorm ();
+    if (squared > meeting.reach * meeting.reach)
       continue;
     auto pair = std::find_if (pairs_.begin (), pairs_.end (),
                               [&] (const Pair &p) { return p.face == meeting.face && p.other == meeting.other; });
     if (pair == pairs_.end ())
       pair = pairs_.insert (pairs_.end (), {meeting.face, meeting.other, HUGE_VAL, HUGE_VAL});
     double &nearest = meeting.surface >= 0 ? pair->separate : pair->joined;
-    nearest = std::min (nearest, distance);
+    nearest = std::min (nearest, squared);
     any = any || meeting.surface >= 0;
   }
   return any;
@@ -124,59 +118,60 @@ FaceGroups::separationsAt (const Eigen::Vector3d &x) const
 
 /** \brief Make the groups that have nodes in reach. */
 void
-FaceGroups::countNodes (const Support &support)
+FaceGroups::countNodes (const std::vector<int> &near)
 {
-  const double reach = REACH * support.radius ();
-  for (std::size_t slot = 0; slot < face_of_slot_.size (); ++slot)
+  groups_.clear ();
+  for (const int slot : near)
   {
-    const int place = place_of_slot_[slot];
-    if (place < 0 || support.squaredDistance (slot) > reach * reach)
+    const int place = place_of_slot_[static_cast<std::size_t> (slot)];
+    if (place < 0)
       continue;
     const int representative = representatives_[static_cast<std::size_t> (place)];
     auto group = std::find_if (groups_.begin (), groups_.end (),
                                [&] (const Group &g) { return g.representative == representative; });
     if (group == groups_.end ())
-    {
-      if (spare_.empty ())
-        spare_.emplace_back ();
-      groups_.push_back (std::move (spare_.back ()));
-      spare_.pop_back ();
-      group = groups_.end () - 1;
-      group->representative = representative;
-      group->nodes = 0;
-    }
+      group = groups_.insert (groups_.end (), {representative, 0});
     ++group->nodes;
   }
 }
 
 bool
-FaceGroups::select (const Support &support, const Eigen::Vector3d &x)
+FaceGroups::select (const Eigen::Vector3d &x, const std::vector<int> &near)
 {
-  for (Group &group : groups_)
-    spare_.push_back (std::move (group));
-  groups_.clear ();
   if (near_.empty () || !findPairs (x))
     return false;
   uniteJoined ();
-  countNodes (support);
+  countNodes (near);
   if (groups_.size () < 2)
     return false;
-  std::stable_sort (groups_.begin (), groups_.end (),
-                    [] (const Group &a, const Group &b) { return a.nodes > b.nodes; });
+  std::sort (groups_.begin (), groups_.end (),
+             [] (const Group &a, const Group &b)
+             { return a.nodes != b.nodes ? a.nodes > b.nodes : a.representative < b.representative; });
   group_of_place_.assign (present_.size (), -1);
   for (std::size_t place = 0; place < present_.size (); ++place)
     for (std::size_t g = 0; g < groups_.size (); ++g)
       if (groups_[g].representative == representatives_[place])
         group_of_place_[place] = static_cast<int> (g);
-  for (Group &group : groups_)
-    group.members.assign (face_of_slot_.size (), 0);
-  for (std::size_t slot = 0; slot < face_of_slot_.size (); ++slot)
-  {
-    const int group = groupOfSlot (static_cast<int> (slot));
-    if (group >= 0)
-      groups_[static_cast<std::size_t> (group)].members[slot] = 1;
-  }
   return true;
+}
+
+const std::vector<int> &
+FaceGroups::groupsOfSlots ()
+{
+  group_of_slot_.resize (face_of_slot_.size ());
+  for (std::size_t slot = 0; slot < face_of_slot_.size (); ++slot)
+    group_of_slot_[slot] = groupOfSlot (static_cast<int> (slot));
+  return group_of_slot_;
+}
+
+std::uint64_t
+FaceGroups::facesOf (int group) const
+{
+  std::uint64_t faces = 0;
+  for (std::size_t place = 0; place < group_of_place_.size (); ++place)
+    if (group_of_place_[place] == group)
+      faces |= std::uint64_t (1) << place;
+  return faces;
 }
 
 } // namespace erkpa

@@ -2,8 +2,9 @@
 #pragma once
 
 #include "face_map.h"
-#include "support.h"
 
+#include <cstddef>
+#include <cstdint>
 #include <vector>
 
 namespace erkpa
@@ -23,23 +24,47 @@ public:
   bool
   gather (const Eigen::Vector3d &center, double extent);
 
-  /** \brief Take up the value points that were gathered. */
+  /** \brief Take up the value points that were gathered.
+   * \param[in] count of them
+   * \param[in] node_of the node of each, by slot
+   */
+  template <typename NodeOfT>
   void
-  assign (const Support &support);
+  assign (std::size_t count, NodeOfT node_of)
+  {
+    face_of_slot_.clear ();
+    for (std::size_t slot = 0; slot < count && faces_ != nullptr; ++slot)
+      face_of_slot_.push_back (faces_->faceOf (node_of (slot)));
+    listPresent ();
+  }
 
   /** \brief Whether faces are kept apart in reach of \a x, which is in the ball that was gathered for. */
   bool
   hasSeparationAt (const Eigen::Vector3d &x) const;
 
-  /** \brief Group the nodes as seen from \a x; false where there are no two groups in its support.
-   * \param[in] support with the support at x selected
+  /** \brief Whether faces meet somewhere near the ball. */
+  bool
+  hasMeetings () const
+  {
+    return !near_.empty ();
+  }
+
+  /** \brief Group the nodes as seen from \a x; false where there are no two groups around it.
+   * \param[in] near slots of the value points within REACH of x
    */
   bool
-  select (const Support &support, const Eigen::Vector3d &x);
+  select (const Eigen::Vector3d &x, const std::vector<int> &near);
 
   /** \brief How far from x the nodes of groups count, in support radii: thin samples of narrow faces shall not be
    * missed. */
   static constexpr double REACH = 1.5;
+
+  /** \brief Number of faces among the gathered value points. */
+  std::size_t
+  present () const
+  {
+    return present_.size ();
+  }
 
   /** \brief Groups with nodes in reach, the largest number of nodes first; 2 or more. */
   int
@@ -48,11 +73,20 @@ public:
     return static_cast<int> (groups_.size ());
   }
 
-  /** \brief Per gathered value point, whether it is of group \a group. */
-  const std::vector<char> &
-  members (int group) const
+  /** \brief Per gathered value point its group; -1 for none. */
+  const std::vector<int> &
+  groupsOfSlots ();
+
+  /** \brief The faces of a group as a number that says which of those present they are, 64 at most. */
+  std::uint64_t
+  facesOf (int group) const;
+
+  /** \brief Whether a gathered value point is of such faces. */
+  bool
+  isOfFaces (int slot, std::uint64_t faces) const
   {
-    return groups_[static_cast<std::size_t> (group)].members;
+    const int place = place_of_slot_[static_cast<std::size_t> (slot)];
+    return place >= 0 && (faces >> place & 1) != 0;
   }
 
   /** \brief For every sharp surface in reach of \a x the place where it keeps faces apart that is nearest. */
@@ -82,15 +116,17 @@ private:
   struct Pair
   {
     int face, other;
-    double separate, joined; // distances from x
+    double separate, joined; // squared distances from x
   };
 
   struct Group
   {
     int representative;
-    int nodes; // in the support
-    std::vector<char> members;
+    int nodes; // around x
   };
+
+  void
+  listPresent ();
 
   bool
   findPairs (const Eigen::Vector3d &x);
@@ -99,7 +135,7 @@ private:
   uniteJoined ();
 
   void
-  countNodes (const Support &support);
+  countNodes (const std::vector<int> &near);
 
   int
   placeOf (int face) const;
@@ -112,7 +148,8 @@ private:
   std::vector<int> representatives_; // of present_
   std::vector<int> group_of_place_;  // of present_
   std::vector<Pair> pairs_;
-  std::vector<Group> groups_, spare_;
+  std::vector<Group> groups_;
+  std::vector<int> group_of_slot_;
 };
 
 } // namespace erkpa

@@ -23,6 +23,18 @@ public:
     double weight;
   };
 
+  /** \brief Beyond its border a face goes on for a while, and might meet another one there: whether x is so far out.
+   * \param[in] nearest distance of the nearest node
+   * \param[in] radius ε
+   * \param[in] aside LocalField::aside ()
+   */
+  static bool
+  isBeyondBorder (double nearest, double radius, double aside)
+  {
+    constexpr double FAR_ASIDE = 0.65, APART = 0.5; // support radii
+    return nearest > APART * radius && aside > FAR_ASIDE;
+  }
+
   /** \brief Forget voters and faces.
    * \param[in] radius ε, the unit of the voters' coordinates
    */

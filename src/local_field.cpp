@@ -34,7 +34,7 @@ LocalField::gatherUnwarped (const Eigen::Vector3d &center, double extent)
   support_.gather (center, extent);
   if (groups_.gather (center, extent))
     support_.gatherForParts (extent);
-  groups_.assign (support_);
+  groups_.assign (support_.points ().size (), [this] (std::size_t slot) { return support_.points ()[slot].node; });
   enrichment_.gather (support_);
 }
 
@@ -116,13 +116,23 @@ LocalField::evaluateUnwarped (const Eigen::Vector3d &x, Task task)
     gatherUnwarped (x, 0.0);
   if (!support_.select (x))
     return false;
-  if (groups_.select (support_, x))
+  if (selectGroups (x))
     return evaluateFaces (x, task);
   face_ = nearestFace ();
   thickening_ = 0.0;
   const bool is_defined = fitSelected (x, task);
   side_key_ = sideKeyOf (face_, enrichment_.sideKey ());
   return is_defined;
+}
+
+/** \brief Group the nodes around x by their faces; false where no two groups are kept apart. */
+bool
+LocalField::selectGroups (const Eigen::Vector3d &x)
+{
+  if (!groups_.hasMeetings ())
+    return false;
+  support_.listWithin (FaceGroups::REACH * support_.radius (), slots_near_);
+  return groups_.select (x, slots_near_);
 }
 
 bool
@@ -155,12 +165,13 @@ void
 LocalField::startVote (const Eigen::Vector3d &x, int groups)
 {
   vote_.start (support_.radius ());
-  for (std::size_t slot = 0; slot < support_.points ().size (); ++slot)
+  for (const int near : slots_near_)
   {
+    const auto slot = static_cast<std::size_t> (near);
     const double t = std::sqrt (support_.squaredDistance (slot)) / (FaceGroups::REACH * vote_.radius ());
-    const int group = t < 1.0 ? groups_.groupOfSlot (static_cast<int> (slot)) : -1;
+    const int group = t < 1.0 ? groups_.groupOfSlot (near) : -1;
     if (group >= 0 && group < groups && support_.points ()[slot].side == 0)
-      vote_.addVoter ({static_cast<int> (slot), (support_.position (slot) - x) / vote_.radius (), 1.0 - t});
+      vote_.addVoter ({near, (support_.position (slot) - x) / vote_.radius (), 1.0 - t});
   }
 }
 
@@ -170,8 +181,9 @@ LocalField::evaluateFaces (const Eigen::Vector3d &x, Task task)
   const int count = std::min (groups_.count (), FaceTree::MAX_FACES);
   const double spacing = support_.radius () * std::sqrt (M_PI / static_cast<double> (support_.nodes ().size ()));
   startVote (x, count);
+  const std::vector<int> &parts = groups_.groupsOfSlots ();
   for (int group = 0; group < count; ++group)
-    if (support_.selectPart (x, groups_.members (group)) && fitSelected (x, Task::HEIGHTS))
+    if (support_.selectPart (x, parts, group) && fitSelected (x, Task::HEIGHTS))
       vote_.addFace (group, result_.value, slope_, heights_);
   result_ = FieldSample ();
   thickening_ = 0.0;
@@ -180,7 +192,7 @@ LocalField::evaluateFaces (const Eigen::Vector3d &x, Task task)
     const FaceTree &tree = vote_.electTree ();
     const std::size_t winner = vote_.winnerOf (tree);
     thickening_ = vote_.thickening (tree, least_wall_);
-    support_.selectPart (x, groups_.members (vote_.groupOf (winner)));
+    support_.selectPart (x, parts, vote_.groupOf (winner));
     face_ = nearestFace ();
     face_centroid_ = supportCentroid ();
     has_face_centroid_ = true;
@@ -205,10 +217,10 @@ LocalField::sampleOnSide (const Eigen::Vector3d &x, const Side &side)
     gatherUnwarped (unwarped, 0.0);
   result_ = FieldSample ();
   bool in_reach = support_.select (unwarped);
-  if (in_reach && groups_.select (support_, unwarped))
+  if (in_reach && selectGroups (unwarped))
   {
     const int group = groups_.groupOf (side.face);
-    in_reach = group >= 0 && support_.selectPart (unwarped, groups_.members (group));
+    in_reach = group >= 0 && support_.selectPart (unwarped, groups_.groupsOfSlots (), group);
   }
   place += field_.points ().origin;
   enrichment_.lookFrom (&place);
@@ -232,7 +244,7 @@ LocalField::sharpSurfaceAt (const Eigen::Vector3d &x)
   gatherUnwarped (unwarped, 0.0);
   if (!support_.select (unwarped))
     return -1;
-  const bool has_faces = groups_.select (support_, unwarped);
+  const bool has_faces = selectGroups (unwarped);
   enrichment_.select (support_, unwarped);
   double least = 0.0;
   int best = enrichment_.nearestSurface (least);

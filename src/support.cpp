@@ -15,8 +15,7 @@ namespace
 // Neighbours of a part's support where there is no noise: one-sided supports reach farther, and a curved face is
 // followed better by fewer nodes.
 constexpr int CLEAN_PART = 14;
-constexpr double PART_REACH = 2.2; // radius of a part's support, at most, in radii of the whole
-constexpr double ROUNDING = 1e-5;  // searches measure in float: this share of a length is left for it
+constexpr double ROUNDING = 1e-5; // searches measure in float: this share of a length is left for it
 
 } // namespace
 
@@ -192,8 +191,7 @@ Support::measurePartRadius (const Eigen::Vector3d &x)
   for (std::size_t i = 0; i < squared_.size (); ++i)
     if (squared_[i] < limit * limit && isOnSurface (i) && isMember (i))
       scratch_.push_back (squared_[i]);
-  const int wanted = size_.k () <= CLEAN_SUPPORT ? std::min (size_.k (), CLEAN_PART) : size_.k ();
-  const auto k = static_cast<std::size_t> (wanted);
+  const auto k = static_cast<std::size_t> (neighborsOfPart (size_.k ()));
   radius_ = limit;
   radius_gradient_ = PART_REACH * whole_radius_gradient_;
   if (scratch_.size () >= k)
@@ -205,6 +203,21 @@ Support::measurePartRadius (const Eigen::Vector3d &x)
     radius_gradient_ = radius_ > 0.0 ? Eigen::Vector3d ((x - position (i)) / radius_) : Eigen::Vector3d::Zero ();
   }
   growth_ = 2.0 * radius_gradient_;
+}
+
+int
+Support::neighborsOfPart (int k)
+{
+  return k <= CLEAN_SUPPORT ? std::min (k, CLEAN_PART) : k;
+}
+
+void
+Support::listWithin (double reach, std::vector<int> &slots) const
+{
+  slots.clear ();
+  for (std::size_t i = 0; i < squared_.size (); ++i)
+    if (squared_[i] <= reach * reach)
+      slots.push_back (static_cast<int> (i));
 }
 
 double
@@ -270,7 +283,7 @@ bool
 Support::select (const Eigen::Vector3d &x)
 {
   measureDistances (x);
-  members_ = nullptr;
+  parts_ = nullptr;
   if (size_.kind () != SupportSize::Kind::PER_NODE)
     measureRadius (x);
   whole_radius_ = radius_;
@@ -279,9 +292,10 @@ Support::select (const Eigen::Vector3d &x)
 }
 
 bool
-Support::selectPart (const Eigen::Vector3d &x, const std::vector<char> &members)
+Support::selectPart (const Eigen::Vector3d &x, const std::vector<int> &parts, int part)
 {
-  members_ = &members;
+  parts_ = &parts;
+  part_ = part;
   if (size_.kind () == SupportSize::Kind::NEAREST)
     measurePartRadius (x);
   return weighNodes (x);

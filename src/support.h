@@ -62,11 +62,12 @@ public:
   /** \brief Narrow the support selected at \a x to a part of the gathered value points.
    *
    * Where k nearest nodes make the radius, it becomes that of the k nearest of the part, up to a limit.
-   * \param[in] members whether a value point is of the part, by slot
+   * \param[in] parts of the value points, by slot
+   * \param[in] part the one that counts
    * \return false where too few nodes are in reach to define the field
    */
   bool
-  selectPart (const Eigen::Vector3d &x, const std::vector<char> &members);
+  selectPart (const Eigen::Vector3d &x, const std::vector<int> &parts, int part);
 
   /** \brief The value points gathered, by node. */
   const std::vector<ValuePoint> &
@@ -147,6 +148,17 @@ public:
   double
   nearestDistance () const;
 
+  /** \brief The value points within \a reach of the point last selected for, by slot. */
+  void
+  listWithin (double reach, std::vector<int> &slots) const;
+
+  /** \brief How many nearest nodes make the radius of a part, where \a k make that of the whole. */
+  static int
+  neighborsOfPart (int k);
+
+  /** \brief Radius of a part's support, at most, in radii of the whole. */
+  static constexpr double PART_REACH = 2.2;
+
   /** \brief Fewest nodes that define a field. */
   static constexpr std::size_t MIN_NODES = 4;
 
@@ -178,7 +190,7 @@ private:
   bool
   isMember (std::size_t slot) const
   {
-    return members_ == nullptr || (*members_)[slot] != 0;
+    return parts_ == nullptr || (*parts_)[slot] == part_;
   }
 
   void
@@ -211,7 +223,8 @@ private:
   mutable std::vector<double> scratch_;
   std::vector<float> found_;
   std::vector<SupportNode> nodes_;
-  const std::vector<char> *members_ = nullptr; // null: all
+  const std::vector<int> *parts_ = nullptr; // null: all
+  int part_ = 0;
   double radius_ = 0.0;
   Eigen::Vector3d radius_gradient_ = Eigen::Vector3d::Zero ();
   double whole_radius_ = 0.0; // of all nodes, where the support is that of a part

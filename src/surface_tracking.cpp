@@ -72,7 +72,7 @@ private:
     extent = 0.5 * grid_.voxelSize () * (high - low).cast<double> ().matrix ().norm ();
   }
 
-  /** \brief Evaluates what is far from sharp surfaces; returns the nodes that want LocalField. */
+  /** \brief Evaluates what has no enrichment; returns the nodes that want LocalField. */
   std::uint64_t
   evaluateTogether (BlockField &field, std::uint64_t nodes, GridBlock &block) const
   {
@@ -82,7 +82,7 @@ private:
     {
       const int node = __builtin_ctzll (nodes);
       const Eigen::Vector3d position = positionOf (block, node);
-      if (field.isPlainAt (position))
+      if (field.canEvaluateAt (position))
       {
         taken[field.size ()] = node;
         field.addPoint (position);
@@ -118,6 +118,7 @@ GridField::GridField (const ImplicitField &field, const PolygonizerOptions &opti
 {
   constexpr double LEAST_WALL = 1.2; // voxels
   local.thicken (local.unwarpedLength (LEAST_WALL * voxel_size));
+  block.thicken (LEAST_WALL * voxel_size);
   const double offset = std::abs (options.iso_level);
   block.setReach (options.reach, offset, std::sqrt (3.0) * voxel_size + offset);
 }
@@ -127,9 +128,8 @@ isInReach (const LocalField &local, const PolygonizerOptions &options, double vo
 {
   const Support &support = local.support ();
   const double offset = std::abs (options.iso_level);
-  // Beyond its border a face goes on for a while, and might meet another one there.
-  constexpr double FAR_ASIDE = 0.65, APART = 0.5; // support radii
-  const bool is_beyond = support.nearestDistance () > APART * support.radius () + offset && local.aside () > FAR_ASIDE;
+  const bool is_beyond =
+      FaceVote::isBeyondBorder (support.nearestDistance () - offset, support.radius (), local.aside ());
   // A cell as large as the support or larger reaches beyond it, even where nodes lie in the cell.
   return (!is_beyond && support.quartileDistance () <= options.reach * support.radius () + offset) ||
          support.nearestDistance () <= local.unwarpedLength (std::sqrt (3.0) * voxel_size) + offset;

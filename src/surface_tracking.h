@@ -106,7 +106,7 @@ struct GridField
   GridField (const ImplicitField &field, const PolygonizerOptions &options, double voxel_size);
 
   LocalField local; ///< walls so thin that both sides cross the same edge of the grid are thickened
-  BlockField block; ///< where no sharp surface is in reach
+  BlockField block; ///< where nothing enriches the field; the same
 
   void
   addTo (PolygonizerReport &report) const

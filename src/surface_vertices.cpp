@@ -170,7 +170,7 @@ private:
       for (const EdgeRoot root : roots)
       {
         const Eigen::Vector3d position = positionOf (block, root);
-        if (!field.isPlainAt (position))
+        if (!field.canEvaluateAt (position))
         {
           alone.push_back (root);
           continue;
@@ -184,7 +184,7 @@ private:
       {
         EdgeRoot root = roots[i];
         const double slope = field.gradient (i)[root.axis] * grid_.voxelSize ();
-        if (!field.isSettled (i))
+        if (!field.isSettled (i) || field.thickening (i) != 0.0)
           alone.push_back (root);
         else if (root.refine (field.value (i) - options_.iso_level, slope) > SHORT)
           roots[left++] = root;

@@ -5,6 +5,8 @@
 #include "local_field.h"
 #include "support.h"
 
+#include <erkpa/sharp_detection.h>
+
 #include <algorithm>
 
 namespace
@@ -155,6 +157,67 @@ TEST_F (BlockFieldTest, AgreesWithTheDefinitionFarFromTheNodes)
       local.gather (x, 0.0);
       const double value = local.value (x);
       EXPECT_NEAR (block.value (0), value, 2e-3 * local.support ().radius ()) << engine[e]->name;
+    }
+  }
+}
+
+/** \brief A box with the faces that are found on it, and the smoother field without. */
+std::shared_ptr<erkpa::ImplicitField>
+boxWithFaces (Order order)
+{
+  const auto points = shapes::points (shapes::box (6000, {0.5, 0.35, 0.25}));
+  FieldOptions options = optionsOf (order, 20);
+  EXPECT_TRUE (erkpa::findSharpSurfaces (*points, *erkpa::makeKdTreeSearch (points->positions), erkpa::SharpOptions (),
+                                         0, options.sharp_surfaces)
+                   .ok ());
+  EXPECT_GE (options.sharp_surfaces.size (), 12u);
+  return shapes::field (points, options);
+}
+
+/** \brief Around edges and corners values come from two and three faces, and walls are thickened. */
+TEST_F (BlockFieldTest, AgreesWithTheDefinitionWhereFacesMeet)
+{
+  for (const Order order : {Order::LINEAR, Order::SPHERICAL})
+  {
+    const auto field = boxWithFaces (order);
+    const double spacing = field->spacing (), least_wall = 1.2 * spacing;
+    std::size_t engines = 0;
+    const erkpa::lanes::Engine *const *engine = erkpa::lanes::engines (engines);
+    for (std::size_t e = 0; e < engines; ++e)
+    {
+      BlockField block (*field, *engine[e]);
+      LocalField local (*field);
+      block.thicken (least_wall);
+      local.thicken (least_wall);
+      int compared = 0, faces = 0, slopes = 0;
+      for (const Vector3d &middle : shapes::boxEdgePoints ({0.5, 0.35, 0.25}, 4))
+      {
+        ASSERT_TRUE (block.gather (middle, spacing));
+        std::vector<Vector3d> points;
+        for (int i = 0; i < 21; ++i)
+          points.push_back (middle + spacing * randomPoint (0.57));
+        for (const Vector3d &x : points)
+        {
+          ASSERT_TRUE (block.canEvaluateAt (x));
+          block.addPoint (x);
+        }
+        block.evaluate (true);
+        for (std::size_t i = 0; i < points.size (); ++i)
+        {
+          local.gather (points[i], 0.0);
+          const LocalSample sample = local.sample (points[i]);
+          ASSERT_TRUE (sample.isDefined ());
+          ASSERT_TRUE (block.isSettled (i));
+          ++compared;
+          EXPECT_NEAR (sample.value, block.value (i), 1e-4 * spacing);
+          EXPECT_NEAR (local.thickening (), block.thickening (i), 1e-3 * spacing);
+          faces += local.face () == block.face (i) ? 1 : 0;
+          slopes += (sample.gradient - block.gradient (i)).norm () < 1e-3 ? 1 : 0;
+        }
+      }
+      // At equal values of two faces either may be taken.
+      EXPECT_GT (faces, compared - compared / 100) << engine[e]->name;
+      EXPECT_GT (slopes, compared - compared / 100) << engine[e]->name;
     }
   }
 }

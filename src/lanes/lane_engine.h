@@ -30,6 +30,7 @@ public:
       const B one (1.0f), zero (0.0f);
       const B near = xsimd::select (fit.isInReach (), one, zero);
       B state = xsimd::select (fit.isDefined (), zero, one);
+      storeFit (fit, first);
       if (settings_.gradients)
         storeGradients (support, fit, first, state);
       storeBytes (near, state, fit, first);
@@ -40,21 +41,35 @@ private:
   using Fit = LaneFit<B, BASIS, CONSTRAINT, KernelT>;
 
   void
+  storeFit (const Fit &fit, std::size_t first) const
+  {
+    if (samples_.nearest_distance != nullptr)
+      fit.nearestDistance ().store_unaligned (samples_.nearest_distance + first);
+    if (samples_.aside != nullptr)
+      fit.aside ().store_unaligned (samples_.aside + first);
+    for (int j = 0; j < (samples_.coefficients != nullptr ? Fit::SIZE : 0); ++j)
+      fit.coefficient (j).store_unaligned (samples_.coefficients + static_cast<std::size_t> (j) * points_.stride +
+                                           first);
+  }
+
+  void
   storeGradients (const LaneSupport<B> &support, Fit &fit, std::size_t first, B &state) const
   {
     B growth[3] = {B (0.0f), B (0.0f), B (0.0f)}, gradient[3];
-    if (settings_.k > 0)
-      support.radiusGradient (growth);
-    else if (points_.growth[0] != nullptr)
+    if (points_.growth[0] != nullptr)
       for (int a = 0; a < 3; ++a)
         growth[a] = B::load_unaligned (points_.growth[a] + first);
+    if (settings_.k > 0)
+      support.radiusGradient (growth);
     fit.gradient (growth, gradient);
     for (int a = 0; a < 3; ++a)
       gradient[a].store_unaligned (samples_.gradient[a] + first);
+    for (int a = 0; a < (samples_.radius_gradient[0] != nullptr ? 3 : 0); ++a)
+      growth[a].store_unaligned (samples_.radius_gradient[a] + first);
     fit.borderOffset (gradient).store_unaligned (samples_.border_offset + first);
     for (std::size_t c = 0; c < nodes_.channels; ++c)
       fit.blend (nodes_.attributes + c * nodes_.count)
-          .store_unaligned (samples_.attributes + c * points_.attributes_stride + first);
+          .store_unaligned (samples_.attributes + c * points_.stride + first);
     state = xsimd::select (fit.isUnsettled () && state < B (0.5f), B (2.0f), state);
   }
 

@@ -17,6 +17,7 @@ class LaneFit
 {
 public:
   using Mask = decltype (B () < B ());
+  static constexpr int SIZE = Terms<B, BASIS>::SIZE;
 
   LaneFit (const Settings &settings, const Nodes &nodes, const LaneSupport<B> &support)
       : settings_ (settings), nodes_ (nodes), support_ (support), kernel_ (settings.kernel), scale_ (support.inverse ())
@@ -71,6 +72,26 @@ public:
   nearestNode () const
   {
     return nearest_node_;
+  }
+
+  B
+  nearestDistance () const
+  {
+    return xsimd::sqrt (nearest_);
+  }
+
+  /** \brief |centroid of the weighted nodes - x|, in ε; zero for the constant basis, which does not sum it up. */
+  B
+  aside () const
+  {
+    return SIZE > 1 ? xsimd::sqrt (dot (centroid_, centroid_)) : B (0.0f);
+  }
+
+  /** \brief Of term j in the combination that fits the nodes, times ε. */
+  B
+  coefficient (int j) const
+  {
+    return support_.radius () * c_[j];
   }
 
   /** \brief ∇f(x); see FieldFit::gradient (). */
@@ -139,7 +160,6 @@ public:
 
 private:
   using TermsT = Terms<B, BASIS>;
-  static constexpr int SIZE = TermsT::SIZE;
   // With other constraints pivots that are raised are a rare thing.
   static constexpr bool RAISES_MATTER = CONSTRAINT == Constraint::FUNCTIONAL;
 

@@ -17,10 +17,9 @@ public:
 
   LaneSupport (const Settings &settings, const Nodes &nodes, const Points &points, std::size_t first,
                const Scratch &scratch)
-      : nodes_ (nodes), list_ (scratch.list), rows_ (scratch.rows),
-        k_ (static_cast<float> (settings.k)), x_{B::load_unaligned (points.x + first),
-                                                 B::load_unaligned (points.y + first),
-                                                 B::load_unaligned (points.z + first)},
+      : nodes_ (nodes), list_ (scratch.list), rows_ (scratch.rows), k_ (static_cast<float> (settings.k)),
+        is_limited_ (settings.limited), x_{B::load_unaligned (points.x + first), B::load_unaligned (points.y + first),
+                                           B::load_unaligned (points.z + first)},
         radius_ (B::load_unaligned (points.radius + first))
   {
     kth_ = radius_ * radius_;
@@ -73,13 +72,15 @@ public:
     return xsimd::fma (d[2], d[2], xsimd::fma (d[1], d[1], d[0] * d[0]));
   }
 
-  /** \brief ∇ε where it is the distance to the k-th node. */
+  /** \brief ∇ε where it is the distance to the k-th node.
+   * \param[in,out] gradient stays where ε is the limit
+   */
   void
   radiusGradient (B *gradient) const
   {
     for (int a = 0; a < 3; ++a)
-      gradient[a] = B (0.0f);
-    auto is_found = B (0.0f) > B (1.0f);
+      gradient[a] = xsimd::select (at_limit_ > B (0.5f), gradient[a], B (0.0f));
+    auto is_found = at_limit_ > B (0.5f);
     for (std::size_t i = 0; i < listed_; ++i)
     {
       B d[3];
@@ -194,6 +195,11 @@ private:
       middle = xsimd::select (in_high > k, middle, high);
     }
     kth_ = largestWithin (high);
+    if (is_limited_)
+    {
+      at_limit_ = xsimd::select (in_high < k, B (1.0f), B (0.0f));
+      kth_ = xsimd::select (in_high < k, radius_ * radius_, kth_);
+    }
     if (xsimd::any (in_high > k))
       stepToKth (low, in_low, in_high > k);
     radius_ = xsimd::sqrt (kth_);
@@ -254,8 +260,10 @@ private:
   std::size_t listed_ = 0;
   bool is_listed_ = false;
   float k_;
+  bool is_limited_;
   B x_[3];
   B radius_, inverse_, kth_;
+  B at_limit_ = B (0.0f); // 1 where ε is Points::radius
 };
 
 } // namespace erkpa::lanes

@@ -7,7 +7,7 @@
 /** \brief The fit of FieldFit at many evaluation points at once, one in each lane of the processor's vectors.
  *
  * LocalField is the definition, in double precision and for one point; this is the same in float for points that share
- * a gathered neighbourhood and have no sharp surface in reach. What is here sees neither Eigen nor PCL, only arrays of
+ * a gathered neighbourhood and have no enrichment. What is here sees neither Eigen nor PCL, only arrays of
  * floats: the sources behind it are compiled once for each instruction set, and memory of a class that aligns to the
  * instruction set must not pass between such units.
  *
@@ -50,6 +50,7 @@ struct Settings
   Constraint constraint;
   Kernel kernel;
   int k;             ///< ε(x) = distance to the k-th nearest node; 0: Points::radius says it
+  bool limited;      ///< where fewer than k nodes lie within Points::radius, that is ε(x)
   bool gradients;    ///< ∇f, border offsets and attributes as well
   float reach;       ///< a point is in reach of the data where a quarter of its nodes lie within reach · ε + offset,
   float offset;      ///< or ...
@@ -76,10 +77,10 @@ struct Points
 {
   std::size_t count;
   const float *x, *y, *z;
-  const float *radius;           ///< ε(x); with k > 0 a bound that it does not exceed
-  const float *guess;            ///< with k > 0: about ε(x)
-  const float *growth[3];        ///< with k = 0: ∇ε(x); null: zero
-  std::size_t attributes_stride; ///< from a point's attributes to the next channel's
+  const float *radius;    ///< ε(x); with k > 0 a bound that it does not exceed
+  const float *guess;     ///< with k > 0: about ε(x)
+  const float *growth[3]; ///< ∇ε(x) where Points::radius is ε(x); null: zero
+  std::size_t stride;     ///< from a point's attribute or coefficient to its next one
 };
 
 enum class State : std::uint8_t
@@ -95,11 +96,15 @@ struct Samples
   float *value, *radius;
   std::uint8_t *in_reach; ///< see Settings::reach
   State *state;
-  std::uint32_t *nearest; ///< place of the nearest node; null: not wanted
+  std::uint32_t *nearest;  ///< place of the nearest node; null: not wanted, like the next ones
+  float *nearest_distance; ///< from it
+  float *aside;            ///< |centroid of the weighted nodes - x|, in ε
+  float *coefficients;     ///< of the terms in u = (y - x) / ε, times ε: term after term
+  std::uint32_t *support;  ///< number of nodes in the support
   float *gradient[3];
+  float *radius_gradient[3]; ///< ∇ε; null: not wanted
   float *border_offset;
-  float *attributes;      ///< channel after channel
-  std::uint32_t *support; ///< number of nodes in the support
+  float *attributes; ///< channel after channel
 };
 
 /** \brief Memory for one call: as many places as there are nodes, and rows of MAX_WIDTH floats for distances. */

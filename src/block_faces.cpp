@@ -1,0 +1,302 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "block_faces.h"
+
+#include "support.h"
+#include "support_size.h"
+
+#include <erkpa/basis.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace erkpa
+{
+
+namespace
+{
+
+template <typename BasisT>
+double
+combineTerms (const float *coefficients, const Eigen::Vector3d &u)
+{
+  Eigen::Matrix<double, BasisT::SIZE, 1> R;
+  Eigen::Matrix<double, BasisT::SIZE, 3> G;
+  BasisT::evaluate (u, R, G);
+  double sum = 0.0;
+  for (int j = 0; j < BasisT::SIZE; ++j)
+    sum += static_cast<double> (coefficients[j]) * R[j];
+  return sum;
+}
+
+std::size_t
+termsOf (lanes::Basis basis)
+{
+  switch (basis)
+  {
+    case lanes::Basis::CONSTANT:
+      return ConstantBasis::SIZE;
+    case lanes::Basis::LINEAR:
+      return LinearBasis::SIZE;
+    case lanes::Basis::SPHERICAL:
+      return SphericalBasis::SIZE;
+    case lanes::Basis::QUADRATIC:
+      break;
+  }
+  return QuadraticBasis::SIZE;
+}
+
+} // namespace
+
+BlockFaces::BlockFaces (const ImplicitField &field, const lanes::Engine &engine, const lanes::Settings &settings,
+                        double unit)
+    : field_ (field), engine_ (engine), settings_ (settings), unit_ (unit), groups_ (field.faces ()),
+      all_ (field, unit), of_part_ (field, unit), at_part_ (0, termsOf (settings.basis))
+{
+}
+
+bool
+BlockFaces::canEvaluate (const ImplicitField &field)
+{
+  return field.supportSize ().kind () == SupportSize::Kind::NEAREST && field.options ().order != Order::CONSTANT;
+}
+
+bool
+BlockFaces::gather (const Eigen::Vector3d &center, double extent)
+{
+  center_ = center;
+  extent_ = extent;
+  has_nodes_ = false;
+  return groups_.gather (center, extent);
+}
+
+/** \brief All nodes that fits to parts of them can reach: see Support::gatherForParts (). */
+void
+BlockFaces::gatherNodes (double radius)
+{
+  if (has_nodes_)
+    return;
+  all_.find (center_, Support::PART_REACH * (radius + extent_) + extent_);
+  all_.copy ();
+  groups_.assign (all_.count (), [this] (std::size_t i) { return all_.node (i); });
+  squared_.resize (all_.count ());
+  has_nodes_ = true;
+}
+
+void
+BlockFaces::combine (const lanes::Settings &settings, double radius, const std::vector<std::uint32_t> &which,
+                     BlockPoints &points)
+{
+  settings_ = settings;
+  settings_.k = Support::neighborsOfPart (settings.k);
+  settings_.limited = true;
+  gatherNodes (radius);
+  if (groups_.present () > MAX_PRESENT)
+    for (const std::uint32_t point : which)
+      points.states[point] = lanes::State::UNSETTLED;
+  combined_.assign (which.size (), Combined ());
+  voters_.clear ();
+  parts_.clear ();
+  for (std::size_t i = 0; i < which.size (); ++i)
+    askForParts (points, which[i], combined_[i]);
+  fitParts (points);
+  for (std::size_t i = 0; i < which.size (); ++i)
+    vote (points, which[i], combined_[i]);
+}
+
+/** \brief The nodes that have a say at x: see FaceGroups::REACH. */
+void
+BlockFaces::listNear (const Eigen::Vector3f &x, float radius)
+{
+  const float *px = all_.coordinates (0), *py = all_.coordinates (1), *pz = all_.coordinates (2);
+  const std::size_t count = all_.count ();
+  for (std::size_t i = 0; i < count; ++i)
+  {
+    const float dx = px[i] - x[0], dy = py[i] - x[1], dz = pz[i] - x[2];
+    squared_[i] = dx * dx + dy * dy + dz * dz;
+  }
+  const auto reach = static_cast<float> (FaceGroups::REACH) * radius, limit = reach * reach;
+  near_.resize (count);
+  std::size_t kept = 0;
+  for (std::size_t i = 0; i < count; ++i)
+  {
+    near_[kept] = static_cast<int> (i);
+    kept += squared_[i] <= limit ? 1 : 0;
+  }
+  near_.resize (kept);
+}
+
+/** \brief List the groups that a point sees, and the nodes that will vote. */
+void
+BlockFaces::askForParts (const BlockPoints &points, std::uint32_t point, Combined &combined)
+{
+  combined.first_part = parts_.size ();
+  combined.first_voter = combined.last_voter = voters_.size ();
+  if (points.states[point] != lanes::State::DEFINED)
+    return;
+  const Eigen::Vector3f x = points.position (point);
+  const float radius = points.radii[point];
+  listNear (x, radius);
+  if (!groups_.select (center_ + unit_ * x.cast<double> (), near_))
+    return;
+  combined.groups = std::min (groups_.count (), FaceTree::MAX_FACES);
+  for (int group = 0; group < combined.groups; ++group)
+  {
+    Part part{};
+    part.point = point;
+    part.faces = groups_.facesOf (group);
+    part.state = lanes::State::UNDEFINED;
+    parts_.push_back (part);
+  }
+  for (const int node : near_)
+  {
+    const auto i = static_cast<std::size_t> (node);
+    const int group = groups_.groupOfSlot (node);
+    const double weight =
+        1.0 - std::sqrt (static_cast<double> (squared_[i])) / (FaceGroups::REACH * static_cast<double> (radius));
+    if (group < 0 || group >= combined.groups || !(weight > 0.0))
+      continue;
+    const Eigen::Vector3f way (all_.coordinates (0)[i] - x[0], all_.coordinates (1)[i] - x[1],
+                               all_.coordinates (2)[i] - x[2]);
+    voters_.push_back ({node, way.cast<double> () / static_cast<double> (radius), weight});
+  }
+  combined.last_voter = voters_.size ();
+}
+
+void
+BlockFaces::fitParts (const BlockPoints &points)
+{
+  std::vector<std::uint64_t> groups;
+  for (const Part &part : parts_)
+    if (std::find (groups.begin (), groups.end (), part.faces) == groups.end ())
+      groups.push_back (part.faces);
+  for (const std::uint64_t faces : groups)
+    fitPart (points, faces);
+}
+
+/** \brief The fits to one group at all points that see it. */
+void
+BlockFaces::fitPart (const BlockPoints &points, std::uint64_t faces)
+{
+  of_part_.select (all_, [&] (std::size_t i) { return groups_.isOfFaces (static_cast<int> (i), faces); });
+  of_part_.copy ();
+  at_part_.clear ();
+  parts_to_fit_.clear ();
+  for (std::uint32_t p = 0; p < parts_.size (); ++p)
+    if (parts_[p].faces == faces)
+    {
+      parts_to_fit_.push_back (p);
+      at_part_.add (points.position (parts_[p].point));
+    }
+  for (std::size_t i = 0; i < parts_to_fit_.size (); ++i)
+  {
+    const std::size_t point = parts_[parts_to_fit_[i]].point;
+    const float radius = points.radii[point], limit = static_cast<float> (Support::PART_REACH) * radius;
+    at_part_.setRadius (i, limit, radius);
+    if (settings_.gradients)
+      at_part_.setGrowth (i, static_cast<float> (Support::PART_REACH) *
+                                 Eigen::Vector3f (points.radius_gradients[0][point], points.radius_gradients[1][point],
+                                                  points.radius_gradients[2][point]));
+  }
+  at_part_.run (engine_, settings_, of_part_.view (false), settings_.gradients);
+  evaluations_ += parts_to_fit_.size ();
+  for (std::size_t i = 0; i < parts_to_fit_.size (); ++i)
+  {
+    support_nodes_ += at_part_.supports[i];
+    takeUp (i, parts_[parts_to_fit_[i]]);
+  }
+}
+
+void
+BlockFaces::takeUp (std::size_t i, Part &part) const
+{
+  part.state = at_part_.states[i];
+  part.value = at_part_.values[i];
+  part.radius = at_part_.radii[i];
+  part.aside = at_part_.asides[i];
+  if (part.state == lanes::State::UNDEFINED)
+    return;
+  part.face = field_.faces ()->faceOf (of_part_.node (at_part_.nearest[i]));
+  for (std::size_t j = 0; j < termsOf (settings_.basis); ++j)
+    part.coefficients[j] = at_part_.coefficient (i, j);
+  if (!settings_.gradients)
+    return;
+  part.border_offset = at_part_.border_offsets[i];
+  for (std::size_t a = 0; a < 3; ++a)
+    part.gradient[static_cast<Eigen::Index> (a)] = at_part_.gradients[a][i];
+}
+
+double
+BlockFaces::heightAt (const Part &part, const Eigen::Vector3d &u) const
+{
+  switch (settings_.basis)
+  {
+    case lanes::Basis::CONSTANT:
+      return combineTerms<ConstantBasis> (part.coefficients.data (), u);
+    case lanes::Basis::LINEAR:
+      return combineTerms<LinearBasis> (part.coefficients.data (), u);
+    case lanes::Basis::SPHERICAL:
+      return combineTerms<SphericalBasis> (part.coefficients.data (), u);
+    case lanes::Basis::QUADRATIC:
+      break;
+  }
+  return combineTerms<QuadraticBasis> (part.coefficients.data (), u);
+}
+
+/** \brief The nodes around a point say how its groups combine; the result takes the place of the fit to all nodes. */
+void
+BlockFaces::vote (BlockPoints &points, std::uint32_t point, Combined &combined)
+{
+  if (combined.groups < 2)
+  {
+    settleReach (points, point, static_cast<double> (points.asides[point]));
+    return;
+  }
+  const auto radius = static_cast<double> (points.radii[point]);
+  vote_.start (radius);
+  for (std::size_t v = combined.first_voter; v < combined.last_voter; ++v)
+    vote_.addVoter (voters_[v]);
+  for (int group = 0; group < combined.groups; ++group)
+  {
+    const Part &part = parts_[combined.first_part + static_cast<std::size_t> (group)];
+    if (part.state == lanes::State::UNDEFINED)
+      continue;
+    const auto own_radius = static_cast<double> (part.radius);
+    heights_.clear ();
+    for (const FaceVote::Voter &voter : vote_.voters ())
+      heights_.push_back (heightAt (part, voter.u * (radius / own_radius)));
+    const Eigen::Vector3d slope =
+        Eigen::Vector3f (part.coefficients[1], part.coefficients[2], part.coefficients[3]).cast<double> () / own_radius;
+    vote_.addFace (group, static_cast<double> (part.value), slope, heights_);
+  }
+  points.states[point] = lanes::State::UNDEFINED;
+  points.values[point] = std::nanf ("");
+  double aside = static_cast<double> (points.asides[point]);
+  if (!vote_.isEmpty ())
+  {
+    const FaceTree &tree = vote_.electTree ();
+    const std::size_t winner = vote_.winnerOf (tree);
+    const Part &part = parts_[combined.first_part + static_cast<std::size_t> (vote_.groupOf (winner))];
+    const double spacing = radius * std::sqrt (M_PI / static_cast<double> (points.supports[point]));
+    combined.thickening = vote_.thickening (tree, least_wall_);
+    combined.face = part.face;
+    aside = vote_.isInThinWall (tree, spacing) ? 0.0 : static_cast<double> (part.aside);
+    points.states[point] = part.state;
+    points.values[point] = static_cast<float> (vote_.valueOf (winner) - combined.thickening);
+    points.border_offsets[point] = part.border_offset;
+    for (std::size_t a = 0; a < 3; ++a)
+      points.gradients[a][point] = part.gradient[static_cast<Eigen::Index> (a)];
+  }
+  settleReach (points, point, aside);
+}
+
+void
+BlockFaces::settleReach (BlockPoints &points, std::uint32_t point, double aside) const
+{
+  const auto nearest = static_cast<double> (points.nearest_distances[point]);
+  if (FaceVote::isBeyondBorder (nearest - static_cast<double> (settings_.offset),
+                                static_cast<double> (points.radii[point]), aside) &&
+      nearest > static_cast<double> (settings_.near_enough))
+    points.in_reach[point] = 0;
+}
+
+} // namespace erkpa

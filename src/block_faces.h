@@ -1,0 +1,164 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "block_nodes.h"
+#include "block_points.h"
+#include "face_groups.h"
+#include "face_vote.h"
+
+#include <erkpa/implicit_field.h>
+
+#include <Eigen/Core>
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+namespace erkpa
+{
+
+/** \brief The field where faces meet, at many points at once: LocalField::evaluateFaces ()'s quick double.
+ *
+ * The fits to a group of faces are made together for all points that see it, in lanes; then the nodes around each point
+ * vote on how the groups combine. Works in the lanes' unit.
+ */
+class BlockFaces
+{
+public:
+  BlockFaces (const ImplicitField &field, const lanes::Engine &engine, const lanes::Settings &settings, double unit);
+
+  /** \brief Whether fields with such settings are evaluated here. */
+  static bool
+  canEvaluate (const ImplicitField &field);
+
+  /** \brief Prepare for points within \a extent of \a center, the origin of the lanes.
+   * \return false where no faces are apart near them
+   */
+  bool
+  gather (const Eigen::Vector3d &center, double extent);
+
+  /** \brief Whether faces are kept apart in reach of \a x (local frame), which is in the ball. */
+  bool
+  hasSeparationAt (const Eigen::Vector3d &x) const
+  {
+    return groups_.hasSeparationAt (x);
+  }
+
+  /** \brief See LocalField::thicken (). */
+  void
+  thicken (double least_wall)
+  {
+    least_wall_ = least_wall / unit_;
+  }
+
+  /** \brief Put what the faces make in place of what was found for all nodes alike.
+   * \param[in] settings what that was found with
+   * \param[in] radius ε at the center, at most; a length
+   * \param[in] which of the points are in reach of where faces are kept apart
+   * \param[in,out] points those that cannot be told are left unsettled
+   */
+  void
+  combine (const lanes::Settings &settings, double radius, const std::vector<std::uint32_t> &which,
+           BlockPoints &points);
+
+  /** \brief For the points last combined, by their place in \a which: the face that holds there, -1 for that of the
+   * nearest node. */
+  int
+  face (std::size_t place) const
+  {
+    return combined_[place].face;
+  }
+
+  /** \brief See LocalField::thickening (). */
+  double
+  thickening (std::size_t place) const
+  {
+    return unit_ * combined_[place].thickening;
+  }
+
+  std::size_t
+  evaluations () const
+  {
+    return evaluations_;
+  }
+
+  std::size_t
+  supportNodes () const
+  {
+    return support_nodes_;
+  }
+
+private:
+  static constexpr std::size_t MAX_TERMS = 10, MAX_PRESENT = 64;
+
+  /** \brief A point and its share of the lists; in reach of few groups. */
+  struct Combined
+  {
+    std::size_t first_voter = 0, last_voter = 0, first_part = 0;
+    int groups = 0; // fewer than two: the fit to all nodes stands
+    int face = -1;
+    double thickening = 0.0;
+  };
+
+  /** \brief The fit to one group at one point. */
+  struct Part
+  {
+    std::uint32_t point;
+    std::uint64_t faces; // of the group, as bits: places among those present
+    lanes::State state;
+    int face;
+    float value, radius, aside, border_offset;
+    Eigen::Vector3f gradient;
+    std::array<float, MAX_TERMS> coefficients;
+  };
+
+  void
+  gatherNodes (double radius);
+
+  void
+  listNear (const Eigen::Vector3f &x, float radius);
+
+  void
+  askForParts (const BlockPoints &points, std::uint32_t point, Combined &combined);
+
+  void
+  fitParts (const BlockPoints &points);
+
+  void
+  fitPart (const BlockPoints &points, std::uint64_t faces);
+
+  void
+  takeUp (std::size_t i, Part &part) const;
+
+  void
+  vote (BlockPoints &points, std::uint32_t point, Combined &combined);
+
+  double
+  heightAt (const Part &part, const Eigen::Vector3d &u) const;
+
+  void
+  settleReach (BlockPoints &points, std::uint32_t point, double aside) const;
+
+  const ImplicitField &field_;
+  const lanes::Engine &engine_;
+  lanes::Settings settings_;
+  double unit_, least_wall_ = 0.0;
+  FaceGroups groups_;
+  Eigen::Vector3d center_ = Eigen::Vector3d::Zero ();
+  double extent_ = 0.0;
+  bool has_nodes_ = false;
+  BlockNodes all_, of_part_;
+  BlockPoints at_part_;
+  std::vector<Combined> combined_;
+  std::vector<FaceVote::Voter> voters_;
+  std::vector<Part> parts_;
+  std::vector<std::uint32_t> parts_to_fit_; // those of one group
+  std::vector<int> near_;                   // nodes around a point
+  std::vector<float> squared_;              // distances from a point
+  std::vector<double> heights_;
+  FaceVote vote_;
+  std::size_t evaluations_ = 0, support_nodes_ = 0;
+};
+
+} // namespace erkpa

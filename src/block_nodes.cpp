@@ -1,0 +1,134 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "block_nodes.h"
+
+#include <cmath>
+
+namespace erkpa
+{
+
+BlockNodes::BlockNodes (const ImplicitField &field, double unit)
+    : field_ (field), table_ (field.nodeTable ()), index_ (table_.grid->index ()), inverse_unit_ (1.0 / unit)
+{
+}
+
+void
+BlockNodes::find (const Eigen::Vector3d &center, double reach)
+{
+  constexpr double ROUNDING = 1e-5; // of a length, in float
+  center_ = center;
+  const double all = (reach + field_.largestOffset ()) * (1.0 + ROUNDING);
+  const auto limit = static_cast<float> (all * all);
+  const PointGrid &grid = *table_.grid;
+  const float *x = grid.coordinates (0).data (), *y = grid.coordinates (1).data (), *z = grid.coordinates (2).data ();
+  const auto cx = static_cast<float> (center[0]), cy = static_cast<float> (center[1]),
+             cz = static_cast<float> (center[2]);
+  std::size_t kept = 0;
+  grid.visitNear (center, all,
+                  [&] (std::size_t first, std::size_t last)
+                  {
+                    if (places_.size () <= kept + (last - first))
+                      places_.resize (2 * (kept + (last - first)) + 1);
+                    if (squared_.size () < places_.size ())
+                      squared_.resize (places_.size ());
+                    for (std::size_t place = first; place < last; ++place)
+                    {
+                      const float dx = x[place] - cx, dy = y[place] - cy, dz = z[place] - cz;
+                      const float squared = dx * dx + dy * dy + dz * dz;
+                      places_[kept] = static_cast<std::uint32_t> (place);
+                      squared_[kept] = squared;
+                      kept += squared <= limit ? 1 : 0;
+                    }
+                  });
+  count_ = kept;
+}
+
+double
+BlockNodes::boundOfKth (std::size_t k, double guess) const
+{
+  const auto count_within = [this] (double distance)
+  {
+    const auto squared = static_cast<float> (distance * distance);
+    int count = 0;
+    for (std::size_t i = 0; i < count_; ++i)
+      count += squared_[i] <= squared ? 1 : 0;
+    return static_cast<std::size_t> (count);
+  };
+  constexpr int STEPS = 5;
+  double low = 0.0, high = guess;
+  if (count_within (guess) < k)
+    return HUGE_VAL;
+  for (int step = 0; step < STEPS; ++step)
+  {
+    const double middle = 0.5 * (std::max (low, 0.5 * high) + high);
+    (count_within (middle) < k ? low : high) = middle;
+  }
+  return high;
+}
+
+void
+BlockNodes::copy ()
+{
+  const auto per_node = static_cast<std::size_t> (field_.valuesPerNode ());
+  value_points_ = per_node * count_;
+  const bool has_values = field_.hasNodeValues () || per_node > 1;
+  const bool has_confidences = !table_.confidences.empty ();
+  for (std::size_t a = 0; a < 3; ++a)
+  {
+    positions_[a].resize (value_points_ + lanes::MAX_WIDTH);
+    normals_[a].resize (value_points_);
+    const std::vector<float> &from = table_.grid->coordinates (static_cast<int> (a));
+    const auto center = static_cast<float> (center_[static_cast<Eigen::Index> (a)]);
+    const auto scale = static_cast<float> (inverse_unit_);
+    for (std::size_t i = 0; i < count_; ++i)
+    {
+      positions_[a][i] = (from[places_[i]] - center) * scale;
+      normals_[a][i] = table_.normals[a][places_[i]];
+    }
+  }
+  confidences_.resize (has_confidences ? value_points_ : 0);
+  for (std::size_t i = 0; i < confidences_.size (); ++i)
+    confidences_[i] = table_.confidences[places_[i % count_]];
+  lambdas_.resize (has_values ? value_points_ : 0);
+  for (std::size_t i = 0; i < lambdas_.size (); ++i)
+    lambdas_[i] = static_cast<float> (inverse_unit_ * field_.nodeValue (node (i % count_), sideOf (i)));
+  for (std::size_t i = count_; i < value_points_; ++i)
+    for (std::size_t a = 0; a < 3; ++a)
+    {
+      normals_[a][i] = normals_[a][i % count_];
+      const auto offset = static_cast<float> (sideOf (i) * inverse_unit_ * field_.offsetOf (node (i % count_)));
+      positions_[a][i] = positions_[a][i % count_] + offset * normals_[a][i];
+    }
+}
+
+void
+BlockNodes::copyAttributes ()
+{
+  const OrientedPoints &points = field_.points ();
+  const auto channels = static_cast<std::size_t> (points.channels);
+  attributes_.resize (channels * value_points_);
+  for (std::size_t c = 0; c < channels; ++c)
+    for (std::size_t i = 0; i < value_points_; ++i)
+      attributes_[c * value_points_ + i] =
+          points.attributes[static_cast<std::size_t> (node (i % count_)) * channels + c];
+}
+
+lanes::Nodes
+BlockNodes::view (bool attributes) const
+{
+  lanes::Nodes nodes{};
+  nodes.count = value_points_;
+  nodes.on_surface = count_;
+  nodes.x = positions_[0].data ();
+  nodes.y = positions_[1].data ();
+  nodes.z = positions_[2].data ();
+  nodes.nx = normals_[0].data ();
+  nodes.ny = normals_[1].data ();
+  nodes.nz = normals_[2].data ();
+  nodes.lambda = lambdas_.empty () ? nullptr : lambdas_.data ();
+  nodes.confidence = confidences_.empty () ? nullptr : confidences_.data ();
+  nodes.attributes = attributes_.data ();
+  nodes.channels = attributes ? static_cast<std::size_t> (field_.points ().channels) : 0;
+  return nodes;
+}
+
+} // namespace erkpa

@@ -1,0 +1,116 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "lanes/lanes.h"
+#include "node_table.h"
+
+#include <erkpa/implicit_field.h>
+
+#include <Eigen/Core>
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+namespace erkpa
+{
+
+/** \brief Nodes around a ball as the arrays that the lanes read: with a middle as origin and a length as unit.
+ *
+ * Arrays keep their memory from ball to ball.
+ */
+class BlockNodes
+{
+public:
+  /** \param[in] unit of the lanes' lengths */
+  BlockNodes (const ImplicitField &field, double unit);
+
+  /** \brief Find the nodes whose value points may lie within \a reach of \a center, which becomes the origin; floats
+   * can say it. */
+  void
+  find (const Eigen::Vector3d &center, double reach);
+
+  /** \brief Take those of other nodes that a predicate of their place among them chooses. */
+  template <typename ChooseT>
+  void
+  select (const BlockNodes &from, ChooseT choose)
+  {
+    center_ = from.center_;
+    places_.resize (from.places_.size ());
+    count_ = 0;
+    for (std::size_t i = 0; i < from.count_; ++i)
+    {
+      places_[count_] = from.places_[i];
+      count_ += choose (i) ? 1 : 0;
+    }
+  }
+
+  /** \brief Number of nodes; their off-surface points are not among them. */
+  std::size_t
+  count () const
+  {
+    return count_;
+  }
+
+  /** \brief Index of a node among the field's points. */
+  int
+  node (std::size_t i) const
+  {
+    return static_cast<int> (index_[places_[i]]);
+  }
+
+  /** \brief A distance within which there are k of the nodes that were found, little more than that of the k-th.
+   *
+   * The exact one is found for every point by itself; a few counts are quicker here than a selection.
+   * \param[in] guess a distance that may do; the result is larger where it does not
+   */
+  double
+  boundOfKth (std::size_t k, double guess) const;
+
+  /** \brief Make the arrays; off-surface points come after the nodes. */
+  void
+  copy ();
+
+  /** \brief Make the array of attributes, which are wanted at few points only. */
+  void
+  copyAttributes ();
+
+  /** \brief A coordinate of the nodes, after copy (). */
+  const float *
+  coordinates (std::size_t axis) const
+  {
+    return positions_[axis].data ();
+  }
+
+  std::size_t
+  valuePoints () const
+  {
+    return value_points_;
+  }
+
+  /** \param[in] attributes whether copyAttributes () was called, and they are wanted */
+  lanes::Nodes
+  view (bool attributes) const;
+
+private:
+  /** \brief 0 at a node, 1 and -1 at its off-surface points. */
+  int
+  sideOf (std::size_t value_point) const
+  {
+    return value_point < count_ ? 0 : value_point < 2 * count_ ? 1 : -1;
+  }
+
+  const ImplicitField &field_;
+  const NodeTable &table_;
+  const std::vector<std::uint32_t> &index_;
+  double inverse_unit_;
+  Eigen::Vector3d center_ = Eigen::Vector3d::Zero ();
+  std::size_t count_ = 0, value_points_ = 0;
+  std::vector<std::uint32_t> places_; // in the table
+  std::vector<float> squared_;        // distances from the center
+  std::array<std::vector<float>, 3> positions_, normals_;
+  std::vector<float> lambdas_, confidences_, attributes_;
+};
+
+} // namespace erkpa

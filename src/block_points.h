@@ -1,0 +1,113 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "lanes/lanes.h"
+
+#include <Eigen/Core>
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+namespace erkpa
+{
+
+/** \brief Evaluation points and what the lanes find there, as arrays in the lanes' unit. Memory is kept. */
+class BlockPoints
+{
+public:
+  /** \param[in] channels of the nodes' attributes
+   * \param[in] terms whose coefficients are wanted; 0: none
+   */
+  BlockPoints (std::size_t channels, std::size_t terms) : channels_ (channels), terms_ (terms) {}
+
+  void
+  clear ()
+  {
+    count_ = 0;
+  }
+
+  std::size_t
+  size () const
+  {
+    return count_;
+  }
+
+  void
+  add (const Eigen::Vector3f &x);
+
+  Eigen::Vector3f
+  position (std::size_t i) const
+  {
+    return {points_[0][i], points_[1][i], points_[2][i]};
+  }
+
+  /** \brief See lanes::Points; for all points, before run (). */
+  void
+  setRadius (std::size_t i, float radius, float guess)
+  {
+    bounds_[i] = radius;
+    guesses_[i] = guess;
+  }
+
+  float
+  bound (std::size_t i) const
+  {
+    return bounds_[i];
+  }
+
+  void
+  setGrowth (std::size_t i, const Eigen::Vector3f &growth)
+  {
+    for (std::size_t a = 0; a < 3; ++a)
+      growths_[a][i] = growth[static_cast<Eigen::Index> (a)];
+  }
+
+  /** \brief Evaluate at all points.
+   * \param[in] growths whether setGrowth () was called
+   */
+  void
+  run (const lanes::Engine &engine, const lanes::Settings &settings, const lanes::Nodes &nodes, bool growths);
+
+  // What was found; see lanes::Samples. Points of faces have theirs written here afterwards.
+  std::vector<float> values, radii, border_offsets, nearest_distances, asides;
+  std::vector<std::uint8_t> in_reach;
+  std::vector<lanes::State> states;
+  std::vector<std::uint32_t> nearest, supports;
+  std::array<std::vector<float>, 3> gradients, radius_gradients;
+
+  float
+  attribute (std::size_t i, std::size_t channel) const
+  {
+    return attributes_[channel * stride () + i];
+  }
+
+  float
+  coefficient (std::size_t i, std::size_t term) const
+  {
+    return coefficients_[term * stride () + i];
+  }
+
+private:
+  std::size_t
+  stride () const
+  {
+    return points_[0].size ();
+  }
+
+  void
+  resize (std::size_t size);
+
+  /** \brief The last vector is filled up with the last point. */
+  void
+  pad ();
+
+  std::size_t channels_, terms_, count_ = 0;
+  std::array<std::vector<float>, 3> points_, growths_;
+  std::vector<float> bounds_, guesses_, attributes_, coefficients_;
+  std::vector<std::uint32_t> list_;
+  std::vector<float> rows_;
+};
+
+} // namespace erkpa
