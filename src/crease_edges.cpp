@@ -22,16 +22,17 @@ using Triangle = std::array<int, 3>;
 class CreaseBuilder
 {
 public:
-  CreaseBuilder (double voxel, const std::vector<CellLoop> &loops, const std::vector<MeshedLoop> &meshed,
+  CreaseBuilder (double voxel, const std::vector<CellLoop> &loops, const std::vector<MeshedLoop> &meshed, int threads,
                  std::vector<Triangle> &triangles, SurfaceVertices &vertices)
-      : voxel_ (voxel), loops_ (loops), meshed_ (meshed), triangles_ (triangles), vertices_ (vertices),
-        centers_ (loops.size (), -1), on_crease_ (loops.size (), 0)
+      : voxel_ (voxel), threads_ (threads), loops_ (loops), meshed_ (meshed), triangles_ (triangles),
+        vertices_ (vertices), centers_ (loops.size (), -1), on_crease_ (loops.size (), 0)
   {
   }
 
   std::vector<VertexPair>
   build ()
   {
+    vertices_.reserve (vertices_.positions.size () + loops_.size ());
     for (std::size_t i = 0; i < loops_.size (); ++i)
       if (meshed_[i].has_center)
       {
@@ -224,7 +225,7 @@ private:
         suspects.push_back (static_cast<int> (t));
     std::set<int> touched; // one change in a place at a time: it may be enough
     const auto is_touched = [&touched] (int v) { return touched.count (v) > 0; };
-    for (const auto &[one, other] : findIntersections (vertices_.positions, triangles, suspects, voxel_))
+    for (const auto &[one, other] : findIntersections (vertices_.positions, triangles, suspects, voxel_, threads_))
     {
       const auto t = static_cast<std::size_t> (one), u = static_cast<std::size_t> (other);
       const Triangle &first = triangles[t], &second = triangles[u];
@@ -340,6 +341,7 @@ private:
   }
 
   double voxel_;
+  int threads_;
   const std::vector<CellLoop> &loops_;
   const std::vector<MeshedLoop> &meshed_;
   std::vector<Triangle> &triangles_;
@@ -354,10 +356,10 @@ private:
 } // namespace
 
 std::vector<VertexPair>
-addCreases (double voxel, const std::vector<CellLoop> &loops, const std::vector<MeshedLoop> &meshed,
+addCreases (double voxel, const std::vector<CellLoop> &loops, const std::vector<MeshedLoop> &meshed, int threads,
             std::vector<Triangle> &triangles, SurfaceVertices &vertices)
 {
-  return CreaseBuilder (voxel, loops, meshed, triangles, vertices).build ();
+  return CreaseBuilder (voxel, loops, meshed, threads, triangles, vertices).build ();
 }
 
 } // namespace erkpa

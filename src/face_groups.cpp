@@ -34,14 +34,25 @@ FaceGroups::hasSeparationAt (const Eigen::Vector3d &x) const
 void
 FaceGroups::listPresent ()
 {
-  present_ = face_of_slot_;
-  std::sort (present_.begin (), present_.end ());
-  present_.erase (std::unique (present_.begin (), present_.end ()), present_.end ());
-  if (!present_.empty () && present_.front () < 0)
-    present_.erase (present_.begin ());
-  place_of_slot_.clear ();
+  present_.clear ();
+  int last = -1; // neighbours follow each other, and mostly are of one face
   for (const int face : face_of_slot_)
-    place_of_slot_.push_back (placeOf (face));
+  {
+    if (face != last && face >= 0 && std::find (present_.begin (), present_.end (), face) == present_.end ())
+      present_.push_back (face);
+    last = face;
+  }
+  std::sort (present_.begin (), present_.end ());
+  place_of_slot_.clear ();
+  int place = -1;
+  last = -1;
+  for (const int face : face_of_slot_)
+  {
+    if (face != last)
+      place = placeOf (face);
+    last = face;
+    place_of_slot_.push_back (place);
+  }
 }
 
 /** \brief The pairs of faces that meet in reach of x; true where some are apart. */

@@ -2,12 +2,14 @@
 #include "face_segmentation.h"
 
 #include "mesh_graph.h"
+#include "parallel_collect.h"
 #include "threads.h"
 
 #include <Eigen/Geometry>
 #include <Eigen/LU>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <set>
 #include <tuple>
@@ -19,7 +21,7 @@ namespace erkpa
 namespace
 {
 
-using NodeLists = std::vector<std::vector<int>>; // per node, sorted
+using NodeLists = std::vector<std::vector<int>>; // per node
 
 Eigen::Vector3d
 positionOf (const OrientedPoints &points, int node)
@@ -39,35 +41,50 @@ angleBetween (const Eigen::Vector3d &a, const Eigen::Vector3d &b)
   return std::atan2 (a.cross (b).norm (), a.dot (b));
 }
 
-/** \brief Whether two nodes fit to one smooth surface: similar normals, and across them no step.
- * \param[in] bend how large a step may be as a share of the distance; that of a circular arc is zero
- */
-bool
-areSmooth (const OrientedPoints &points, const SegmentationOptions &options, int i, int j, double angle, double bend)
+/** \brief Tells what fits to one smooth surface. */
+class SmoothnessTest
 {
-  const Eigen::Vector3d n = normalOf (points, i), m = normalOf (points, j);
-  if (n.dot (m) < std::cos (angle))
-    return false;
-  const Eigen::Vector3d way = positionOf (points, j) - positionOf (points, i);
-  return 0.5 * std::abs (way.dot (n + m)) <= std::max (bend * way.norm (), options.chord);
-}
+public:
+  SmoothnessTest (const OrientedPoints &points, const SegmentationOptions &options)
+      : points_ (points), chord_ (options.chord), cosine_ (std::cos (options.angle)),
+        far_cosine_ (std::cos (BRIDGE_ANGLE * options.angle)), link_reach_ (options.link_reach * options.spacing)
+  {
+  }
 
-bool
-areSmooth (const OrientedPoints &points, const SegmentationOptions &options, int i, int j)
-{
-  return areSmooth (points, options, i, j, options.angle, 0.2);
-}
+  /** \brief Whether two nodes fit to one smooth surface. */
+  bool
+  areSmooth (int i, int j) const
+  {
+    const Eigen::Vector3d way = positionOf (points_, j) - positionOf (points_, i);
+    return areSmooth (i, j, way, way.norm (), cosine_, BEND);
+  }
 
-/** \brief Whether to link two nodes. Those farther apart must agree better: they bridge gaps in narrow faces. */
-bool
-areLinked (const OrientedPoints &points, const SegmentationOptions &options, int i, int j)
-{
-  constexpr double BRIDGE_ANGLE = 0.7, BRIDGE_BEND = 0.08;
-  const double distance = (positionOf (points, j) - positionOf (points, i)).norm ();
-  const bool is_near = distance <= options.link_reach * options.spacing;
-  return is_near ? areSmooth (points, options, i, j)
-                 : areSmooth (points, options, i, j, BRIDGE_ANGLE * options.angle, BRIDGE_BEND);
-}
+  /** \brief Whether to link two nodes. Those farther apart must agree better: they bridge gaps in narrow faces. */
+  bool
+  areLinked (int i, int j, double &distance) const
+  {
+    const Eigen::Vector3d way = positionOf (points_, j) - positionOf (points_, i);
+    distance = way.norm ();
+    return distance <= link_reach_ ? areSmooth (i, j, way, distance, cosine_, BEND)
+                                   : areSmooth (i, j, way, distance, far_cosine_, BRIDGE_BEND);
+  }
+
+private:
+  static constexpr double BEND = 0.2, BRIDGE_BEND = 0.08, BRIDGE_ANGLE = 0.7;
+
+  /** \brief Similar normals, and across them no step.
+   * \param[in] bend how large a step may be as a share of the distance; that of a circular arc is zero
+   */
+  bool
+  areSmooth (int i, int j, const Eigen::Vector3d &way, double distance, double least_cosine, double bend) const
+  {
+    const Eigen::Vector3d n = normalOf (points_, i), m = normalOf (points_, j);
+    return n.dot (m) >= least_cosine && 0.5 * std::abs (way.dot (n + m)) <= std::max (bend * distance, chord_);
+  }
+
+  const OrientedPoints &points_;
+  double chord_, cosine_, far_cosine_, link_reach_;
+};
 
 /** \brief Links every node with the neighbours it is smooth with, and tells which nodes have others, too. */
 NodeLists
@@ -81,23 +98,24 @@ linkNeighbors (const OrientedPoints &points, const NeighborSearch &search, const
     std::vector<int> nodes;
     std::vector<float> squared;
   };
+  const SmoothnessTest test (points, options);
   const double reach = options.bridge_reach * options.spacing;
   const double far = std::max (reach, options.separation_reach);
+  const double suspicious = std::max (options.separation_reach, options.link_reach * options.spacing);
   parallelFor (
       points.size (), threads, [] { return Found (); },
       [&] (Found &found, std::size_t i)
       {
         search.withinRadius (points.positions[i], far, found.nodes, found.squared);
-        std::sort (found.nodes.begin (), found.nodes.end ());
         for (const int j : found.nodes)
         {
           const int node = static_cast<int> (i);
+          double distance = 0.0;
           if (j == node)
             continue;
-          const double distance = (positionOf (points, j) - positionOf (points, node)).norm ();
-          if (distance <= reach && areLinked (points, options, node, j))
+          if (test.areLinked (node, j, distance) && distance <= reach)
             links[i].push_back (j);
-          else if (distance <= std::max (options.separation_reach, options.link_reach * options.spacing))
+          else if (distance <= suspicious)
             is_suspect[i] = 1;
         }
       });
@@ -110,7 +128,8 @@ class LocalGroups
 public:
   LocalGroups (const OrientedPoints &points, const NeighborSearch &search, const SegmentationOptions &options,
                const NodeLists &links)
-      : points_ (points), search_ (search), options_ (options), links_ (links), slots_ (points.size (), -1)
+      : points_ (points), search_ (search), options_ (options), test_ (points, options), links_ (links),
+        slots_ (points.size (), -1)
   {
   }
 
@@ -123,10 +142,8 @@ public:
     for (std::size_t slot = 0; slot < ball_.size (); ++slot)
       slots_[static_cast<std::size_t> (ball_[slot])] = static_cast<int> (slot);
     DisjointSets groups (ball_.size ());
-    for (std::size_t slot = 0; slot < ball_.size (); ++slot)
-      for (const int j : links_[static_cast<std::size_t> (ball_[slot])])
-        if (slots_[static_cast<std::size_t> (j)] > static_cast<int> (slot))
-          groups.unite (static_cast<int> (slot), slots_[static_cast<std::size_t> (j)]);
+    if (slots_[i] >= 0)
+      groupFrom (slots_[i], groups);
     std::vector<int> sizes (ball_.size (), 0), apart;
     for (std::size_t slot = 0; slot < ball_.size (); ++slot)
       ++sizes[static_cast<std::size_t> (groups.find (static_cast<int> (slot)))];
@@ -137,7 +154,7 @@ public:
       const int group = groups.find (static_cast<int> (slot));
       if (own >= 0 && group != own && sizes[static_cast<std::size_t> (own)] >= options_.smallest &&
           sizes[static_cast<std::size_t> (group)] >= options_.smallest &&
-          static_cast<double> (squared_[slot]) <= reach && !areSmooth (points_, options_, node, ball_[slot]))
+          static_cast<double> (squared_[slot]) <= reach && !test_.areSmooth (node, ball_[slot]))
         apart.push_back (ball_[slot]);
     }
     for (const int j : ball_)
@@ -147,9 +164,42 @@ public:
   }
 
 private:
+  /** \brief Unite what is linked, from one slot on.
+   *
+   * Links go both ways: once most of the ball is known to be one group, those of the other slots tell the rest.
+   */
+  void
+  groupFrom (int start, DisjointSets &groups)
+  {
+    const auto size = static_cast<int> (ball_.size ());
+    std::vector<char> is_done (ball_.size (), 0);
+    int in_group = 0;
+    for (int step = 0; step < size && 2 * in_group <= size; ++step)
+    {
+      const int slot = (start + step) % size;
+      uniteLinked (slot, groups);
+      is_done[static_cast<std::size_t> (slot)] = 1;
+      in_group = 0;
+      for (int other = 0; other < size; ++other)
+        in_group += groups.find (other) == groups.find (start) ? 1 : 0;
+    }
+    for (int slot = 0; slot < size; ++slot)
+      if (!is_done[static_cast<std::size_t> (slot)] && groups.find (slot) != groups.find (start))
+        uniteLinked (slot, groups);
+  }
+
+  void
+  uniteLinked (int slot, DisjointSets &groups)
+  {
+    for (const int j : links_[static_cast<std::size_t> (ball_[static_cast<std::size_t> (slot)])])
+      if (slots_[static_cast<std::size_t> (j)] >= 0)
+        groups.unite (slot, slots_[static_cast<std::size_t> (j)]);
+  }
+
   const OrientedPoints &points_;
   const NeighborSearch &search_;
   const SegmentationOptions &options_;
+  const SmoothnessTest test_;
   const NodeLists &links_;
   std::vector<int> slots_; // place in the ball, -1 outside
   std::vector<int> ball_;
@@ -169,54 +219,112 @@ findNodesApart (const OrientedPoints &points, const NeighborSearch &search, cons
         if (is_suspect[i])
           seen[i] = groups.nodesApartFrom (static_cast<int> (i));
       });
-  for (std::size_t i = 0; i < seen.size (); ++i)
-    for (const int j : seen[i])
-    {
-      const auto &other = seen[static_cast<std::size_t> (j)];
-      if (std::binary_search (other.begin (), other.end (), static_cast<int> (i)))
-        apart[i].push_back (j);
-    }
+  parallelFor (
+      points.size (), threads, [] { return 0; },
+      [&] (int, std::size_t i)
+      {
+        for (const int j : seen[i])
+        {
+          const auto &other = seen[static_cast<std::size_t> (j)];
+          if (std::binary_search (other.begin (), other.end (), static_cast<int> (i)))
+            apart[i].push_back (j);
+        }
+      });
   return apart;
+}
+
+/** \brief A link and what it costs to grow a face along it. */
+struct Growth
+{
+  float cost;
+  int from, to;
+
+  bool
+  operator<(const Growth &other) const
+  {
+    return std::tie (cost, from, to) < std::tie (other.cost, other.from, other.to);
+  }
+};
+
+/** \brief All links once: the turn between the normals, and a little for the way. */
+std::vector<Growth>
+listGrowths (const OrientedPoints &points, const SegmentationOptions &options, const NodeLists &links, int threads)
+{
+  constexpr double PER_SPACING = 0.05; // radians that weigh as much as a spacing
+  constexpr std::size_t STRETCH = 512;
+  const auto list = [&] (std::size_t first, std::size_t last, std::vector<Growth> &growths)
+  {
+    for (std::size_t i = first; i < last; ++i)
+      for (const int j : links[i])
+      {
+        const int node = static_cast<int> (i);
+        if (j < node)
+          continue;
+        const double turn = angleBetween (normalOf (points, node), normalOf (points, j));
+        const double way = (positionOf (points, j) - positionOf (points, node)).norm () / options.spacing;
+        growths.push_back ({static_cast<float> (turn + PER_SPACING * way), node, j});
+      }
+  };
+  return parallelCollect<Growth> (points.size (), threads, list, STRETCH);
 }
 
 /** \brief Grows faces along the links, the smoothest first, without ever joining nodes that are apart. */
 class FaceGrower
 {
 public:
-  FaceGrower (const OrientedPoints &points, const SegmentationOptions &options, const NodeLists &links, NodeLists apart)
-      : sets_ (points.size ()), apart_ (std::move (apart))
-  {
-    for (std::size_t i = 0; i < links.size (); ++i)
-      for (const int j : links[i])
-        if (static_cast<int> (i) < j)
-        {
-          const int node = static_cast<int> (i);
-          const double turn = angleBetween (normalOf (points, node), normalOf (points, j));
-          const double way = (positionOf (points, j) - positionOf (points, node)).norm () / options.spacing;
-          constexpr double PER_SPACING = 0.05; // radians that weigh as much as a spacing
-          order_.emplace_back (static_cast<float> (turn + PER_SPACING * way), node, j);
-        }
-    std::sort (order_.begin (), order_.end ());
-  }
+  /** \param[in] nodes number of them
+   * \param[in] apart of each node those that must not be on its face
+   */
+  FaceGrower (std::size_t nodes, NodeLists apart) : sets_ (nodes), apart_ (std::move (apart)) {}
 
-  /** \brief The faces' representatives, per node. */
+  /** \brief The faces' representatives, per node.
+   *
+   * Cheap links make most of the faces: the others are taken up in bands of cost, and those within a face need no
+   * order (Filter-Kruskal, Osipov, Sanders, Singler 2009).
+   */
   DisjointSets &
-  grow ()
+  grow (const std::vector<Growth> &growths)
   {
-    for (const auto &[cost, i, j] : order_)
+    constexpr std::size_t BANDS = 32;
+    float most = 1e-12f;
+    for (const Growth &growth : growths)
+      most = std::max (most, growth.cost);
+    const auto band_of = [most] (const Growth &growth)
+    { return std::min (BANDS - 1, static_cast<std::size_t> (growth.cost / most * BANDS)); };
+    std::array<std::size_t, BANDS> sizes{};
+    for (const Growth &growth : growths)
+      ++sizes[band_of (growth)];
+    std::array<std::vector<Growth>, BANDS> bands;
+    for (std::size_t b = 0; b < BANDS; ++b)
+      bands[b].reserve (sizes[b]);
+    for (const Growth &growth : growths)
+      bands[band_of (growth)].push_back (growth);
+    for (std::vector<Growth> &band : bands)
     {
-      const int a = sets_.find (i), b = sets_.find (j);
-      if (a == b || refused_.count ({std::min (a, b), std::max (a, b)}) > 0)
-        continue;
-      if (areApart (a, b))
-        refused_.emplace (std::min (a, b), std::max (a, b));
-      else
-        join (a, b);
+      band.erase (std::remove_if (band.begin (), band.end (),
+                                  [this] (const Growth &growth)
+                                  { return sets_.find (growth.from) == sets_.find (growth.to); }),
+                  band.end ());
+      std::sort (band.begin (), band.end ());
+      for (const Growth &growth : band)
+        grow (growth);
     }
     return sets_;
   }
 
 private:
+  void
+  grow (const Growth &growth)
+  {
+    const int a = sets_.find (growth.from), b = sets_.find (growth.to);
+    if (a == b || refused_.count ({std::min (a, b), std::max (a, b)}) > 0)
+      return;
+    if (areApart (a, b))
+      refused_.emplace (std::min (a, b), std::max (a, b));
+    else
+      join (a, b);
+  }
+
   bool
   areApart (int a, int b)
   {
@@ -242,7 +350,6 @@ private:
 
   DisjointSets sets_;
   NodeLists apart_; // of each set
-  std::vector<std::tuple<float, int, int>> order_;
   std::set<std::pair<int, int>> refused_;
 };
 
@@ -275,7 +382,8 @@ segmentFaces (const OrientedPoints &points, const NeighborSearch &search, const 
   std::vector<char> is_suspect;
   const NodeLists links = linkNeighbors (points, search, options, threads, is_suspect);
   const NodeLists apart = findNodesApart (points, search, options, links, is_suspect, threads);
-  DisjointSets sets = FaceGrower (points, options, links, apart).grow ();
+  FaceGrower grower (points.size (), apart);
+  DisjointSets &sets = grower.grow (listGrowths (points, options, links, threads));
 
   FaceSegmentation result;
   const auto n = static_cast<int> (points.size ());
@@ -289,16 +397,22 @@ segmentFaces (const OrientedPoints &points, const NeighborSearch &search, const 
       numbers[root] = result.count++;
     result.faces.push_back (numbers[root]);
   }
-  for (int i = 0; i < n; ++i)
-    for (const int j : apart[static_cast<std::size_t> (i)])
-    {
-      const int face = result.faces[static_cast<std::size_t> (i)], other = result.faces[static_cast<std::size_t> (j)];
-      if (i > j || face < 0 || other < 0)
-        continue;
-      result.separations.push_back (separationOf (points, i, j));
-      result.separations.back ().face = std::min (face, other);
-      result.separations.back ().other = std::max (face, other);
-    }
+  const auto list_separations = [&] (std::size_t first, std::size_t last, std::vector<Separation> &separations)
+  {
+    for (std::size_t i = first; i < last; ++i)
+      for (const int j : apart[i])
+      {
+        const int node = static_cast<int> (i), face = result.faces[i],
+                  other = result.faces[static_cast<std::size_t> (j)];
+        if (node > j || face < 0 || other < 0)
+          continue;
+        separations.push_back (separationOf (points, node, j));
+        separations.back ().face = std::min (face, other);
+        separations.back ().other = std::max (face, other);
+      }
+  };
+  constexpr std::size_t STRETCH = 512;
+  result.separations = parallelCollect<Separation> (points.size (), threads, list_separations, STRETCH);
   return result;
 }
 

@@ -33,7 +33,7 @@ public:
     Eigen::Vector3d middle = Eigen::Vector3d::Zero ();
     for (const int v : loop.ring)
       middle += position (v) / static_cast<double> (loop.ring.size ());
-    local_.gather (middle, REACH * voxel_);
+    local_.gather (middle, NEAR * voxel_);
     findSides (loop, result);
     if (result.crossings.empty ())
       return;
@@ -58,6 +58,7 @@ private:
   static constexpr double LEAST_TURN = 0.07; // radians, 4 degrees: what turns less is no crease
   static constexpr double TOLERANCE = 1e-5;  // voxels
   static constexpr double REACH = 2.5;       // voxels that a vertex may be away from the middle of its loop
+  static constexpr double NEAR = 1.0;        // voxels that few of them are
 
   const Eigen::Vector3d &
   position (int v) const

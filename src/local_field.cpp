@@ -31,9 +31,7 @@ LocalField::gatherUnwarped (const Eigen::Vector3d &center, double extent)
 {
   ball_center_ = center;
   ball_extent_ = extent;
-  support_.gather (center, extent);
-  if (groups_.gather (center, extent))
-    support_.gatherForParts (extent);
+  support_.gather (center, extent, groups_.gather (center, extent));
   groups_.assign (support_.points ().size (), [this] (std::size_t slot) { return support_.points ()[slot].node; });
   enrichment_.gather (support_);
 }

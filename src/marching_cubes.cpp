@@ -224,7 +224,8 @@ polygonize (const ImplicitField &field, const PolygonizerOptions &options, Trian
   meshCentered (cell_mesh.centered_loops, triangles, vertices);
   projectVertices (field, options, on_edges, 0.3 * voxel, vertices, report);
   const std::vector<MeshedLoop> loops = meshLoops (field, options, cell_mesh.mixed_loops, voxel, vertices, report);
-  std::vector<VertexPair> creases = addCreases (voxel, cell_mesh.mixed_loops, loops, triangles, vertices);
+  std::vector<VertexPair> creases =
+      addCreases (voxel, cell_mesh.mixed_loops, loops, options.threads, triangles, vertices);
   const std::size_t in_cells = vertices.positions.size ();
   trimBorder (options.border_offset, options.threads, cell_mesh.border, triangles, vertices);
   projectVertices (field, options, in_cells, 0.1 * voxel, vertices, report);

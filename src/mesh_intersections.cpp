@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "mesh_intersections.h"
 
+#include "parallel_collect.h"
+
 #include <Eigen/Geometry>
 
 #include <algorithm>
@@ -111,7 +113,7 @@ passThrough (const Positions &positions, const Triangle &one, const Triangle &ot
 
 std::vector<std::pair<int, int>>
 findIntersections (const Positions &positions, const std::vector<Triangle> &triangles, const std::vector<int> &suspects,
-                   double cell)
+                   double cell, int threads)
 {
   std::unordered_map<std::uint64_t, std::vector<int>> cells;
   std::vector<char> is_suspect (triangles.size (), 0);
@@ -121,8 +123,8 @@ findIntersections (const Positions &positions, const std::vector<Triangle> &tria
     visitCells (Box (positions, triangles[static_cast<std::size_t> (s)]), cell,
                 [&] (std::uint64_t key) { cells[key].push_back (s); });
   }
-  std::vector<std::pair<int, int>> pairs;
-  for (std::size_t t = 0; t < triangles.size (); ++t)
+  using Pairs = std::vector<std::pair<int, int>>;
+  const auto find_with = [&] (std::size_t t, Pairs &pairs)
   {
     const Box box (positions, triangles[t]);
     visitCells (box, cell,
@@ -137,7 +139,16 @@ findIntersections (const Positions &positions, const std::vector<Triangle> &tria
                         passThrough (positions, triangles[static_cast<std::size_t> (s)], triangles[t]))
                       pairs.emplace_back (s, static_cast<int> (t));
                 });
-  }
+  };
+  constexpr std::size_t STRETCH = 2048;
+  Pairs pairs = parallelCollect<std::pair<int, int>> (
+      triangles.size (), threads,
+      [&] (std::size_t first, std::size_t last, Pairs &part)
+      {
+        for (std::size_t t = first; t < last; ++t)
+          find_with (t, part);
+      },
+      STRETCH);
   std::sort (pairs.begin (), pairs.end ());
   pairs.erase (std::unique (pairs.begin (), pairs.end ()), pairs.end ());
   return pairs;

@@ -25,6 +25,6 @@ passThrough (const std::vector<Eigen::Vector3d> &positions, const std::array<int
  */
 std::vector<std::pair<int, int>>
 findIntersections (const std::vector<Eigen::Vector3d> &positions, const std::vector<std::array<int, 3>> &triangles,
-                   const std::vector<int> &suspects, double cell);
+                   const std::vector<int> &suspects, double cell, int threads);
 
 } // namespace erkpa

@@ -41,6 +41,12 @@ public:
                         });
   }
 
+  bool
+  hasOrder () const override
+  {
+    return true;
+  }
+
 private:
   static void
   store (const std::vector<std::pair<float, int>> &found, std::vector<int> &indices, std::vector<float> &squared)

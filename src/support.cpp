@@ -26,13 +26,15 @@ Support::Support (const ImplicitField &field, const NeighborSearch &search)
 }
 
 void
-Support::gather (const Eigen::Vector3d &center, double extent)
+Support::gather (const Eigen::Vector3d &center, double extent, bool for_parts)
 {
   center_ = center;
   switch (size_.kind ())
   {
     case SupportSize::Kind::NEAREST:
       searchNearest (center, extent);
+      if (for_parts && center_radius_ > 0.0)
+        search (center, PART_REACH * (center_radius_ + extent) + extent);
       break;
     case SupportSize::Kind::CONSTANT:
       center_radius_ = size_.radiusAt (center);
@@ -47,17 +49,8 @@ Support::gather (const Eigen::Vector3d &center, double extent)
       size_.nodesReaching (center, extent + field_.largestOffset (), candidates_);
       break;
   }
-  std::sort (candidates_.begin (), candidates_.end ());
-  makeValuePoints ();
-}
-
-void
-Support::gatherForParts (double extent)
-{
-  if (size_.kind () != SupportSize::Kind::NEAREST)
-    return;
-  search (center_, PART_REACH * (center_radius_ + extent) + extent);
-  std::sort (candidates_.begin (), candidates_.end ());
+  if (size_.kind () == SupportSize::Kind::PER_NODE || !search_.hasOrder ())
+    std::sort (candidates_.begin (), candidates_.end ());
   makeValuePoints ();
 }
 

@@ -31,7 +31,7 @@ struct SupportNode
 
 /** \brief The nodes that an evaluation point reaches, and how far it reaches: ε(x) and ∇ε(x).
  *
- * Candidates are gathered once for a ball and serve all points in it. They stay sorted by index, so that sums over
+ * Candidates are gathered once for a ball and serve all points in it. They stay in one order, so that sums over
  * them do not depend on the ball they were gathered for. Where nodes have radii of their own, ε(x) is their weighted
  * mean and only a scale of the coordinates.
  */
@@ -41,9 +41,11 @@ public:
   /** \param[in] search finds the nodes: the field's own, or its quick one, which finds the same */
   Support (const ImplicitField &field, const NeighborSearch &search);
 
-  /** \brief Gather all nodes that points within \a extent of \a center (local frame) can reach. */
+  /** \brief Gather all nodes that points within \a extent of \a center (local frame) can reach.
+   * \param[in] for_parts gather farther, so that parts of the nodes make supports, too
+   */
   void
-  gather (const Eigen::Vector3d &center, double extent);
+  gather (const Eigen::Vector3d &center, double extent, bool for_parts = false);
 
   /** \brief Whether what was gathered is all that \a x reaches; only a radius that is a function can outgrow it. */
   bool
@@ -54,10 +56,6 @@ public:
    */
   bool
   select (const Eigen::Vector3d &x);
-
-  /** \brief Gather farther than gather () did for the same ball, so that parts of the nodes make supports, too. */
-  void
-  gatherForParts (double extent);
 
   /** \brief Narrow the support selected at \a x to a part of the gathered value points.
    *

@@ -34,6 +34,19 @@ struct SurfaceVertices
     attributes.resize (size * static_cast<std::size_t> (channels));
   }
 
+  /** \brief Make room for \a size vertices, so that appending does not move the others. */
+  void
+  reserve (std::size_t size)
+  {
+    const std::size_t channels = positions.empty () ? 0 : attributes.size () / positions.size ();
+    positions.reserve (size);
+    normals.reserve (size);
+    border_offsets.reserve (size);
+    faces.reserve (size);
+    side_keys.reserve (size);
+    attributes.reserve (size * channels);
+  }
+
   /** \brief Append a copy of a vertex. */
   void
   append (std::size_t vertex)

@@ -39,8 +39,8 @@ TEST (MeshIntersections, ComeWithASuspectFirstAndEachPairOnce)
   const std::vector<Triangle> triangles{FLAT, {3, 4, 5}, {7, 8, 9}};
   for (const double cell : {0.05, 0.3, 10.0})
   {
-    EXPECT_EQ (erkpa::findIntersections (POINTS, triangles, {1}, cell), (Pairs{{1, 0}}));
-    EXPECT_EQ (erkpa::findIntersections (POINTS, triangles, {0, 1, 2}, cell), (Pairs{{0, 1}}));
-    EXPECT_TRUE (erkpa::findIntersections (POINTS, triangles, {2}, cell).empty ());
+    EXPECT_EQ (erkpa::findIntersections (POINTS, triangles, {1}, cell, 2), (Pairs{{1, 0}}));
+    EXPECT_EQ (erkpa::findIntersections (POINTS, triangles, {0, 1, 2}, cell, 2), (Pairs{{0, 1}}));
+    EXPECT_TRUE (erkpa::findIntersections (POINTS, triangles, {2}, cell, 2).empty ());
   }
 }

@@ -33,6 +33,13 @@ public:
   virtual void
   withinRadius (const Eigen::Vector3f &x, double radius, std::vector<int> &indices,
                 std::vector<float> &squared_distances) const = 0;
+
+  /** \brief Whether withinRadius () gives any two nodes in the same order wherever it is asked. */
+  virtual bool
+  hasOrder () const
+  {
+    return false;
+  }
 };
 
 /** \brief A search over pcl::search::KdTree (KdTreeFLANN).
