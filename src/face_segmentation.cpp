@@ -129,7 +129,7 @@ public:
   LocalGroups (const OrientedPoints &points, const NeighborSearch &search, const SegmentationOptions &options,
                const NodeLists &links)
       : points_ (points), search_ (search), options_ (options), test_ (points, options), links_ (links),
-        slots_ (points.size (), -1)
+        slots_ (points.size (), options.ball)
   {
   }
 
@@ -141,59 +141,113 @@ public:
     search_.nearestK (points_.positions[i], options_.ball, ball_, squared_);
     for (std::size_t slot = 0; slot < ball_.size (); ++slot)
       slots_[static_cast<std::size_t> (ball_[slot])] = static_cast<int> (slot);
-    DisjointSets groups (ball_.size ());
-    if (slots_[i] >= 0)
-      groupFrom (slots_[i], groups);
-    std::vector<int> sizes (ball_.size (), 0), apart;
-    for (std::size_t slot = 0; slot < ball_.size (); ++slot)
-      ++sizes[static_cast<std::size_t> (groups.find (static_cast<int> (slot)))];
-    const int own = slots_[i] < 0 ? -1 : groups.find (slots_[i]);
-    const double reach = options_.separation_reach * options_.separation_reach;
-    for (std::size_t slot = 0; slot < ball_.size (); ++slot)
+    std::vector<int> apart;
+    if (slots_[i] < options_.ball)
     {
-      const int group = groups.find (static_cast<int> (slot));
-      if (own >= 0 && group != own && sizes[static_cast<std::size_t> (own)] >= options_.smallest &&
-          sizes[static_cast<std::size_t> (group)] >= options_.smallest &&
-          static_cast<double> (squared_[slot]) <= reach && !test_.areSmooth (node, ball_[slot]))
-        apart.push_back (ball_[slot]);
+      listStrangers (node);
+      for (const int slot : groupsOfStrangers (slots_[i]))
+        apart.push_back (ball_[static_cast<std::size_t> (slot)]);
     }
     for (const int j : ball_)
-      slots_[static_cast<std::size_t> (j)] = -1;
+      slots_[static_cast<std::size_t> (j)] = options_.ball;
     std::sort (apart.begin (), apart.end ());
     return apart;
   }
 
 private:
-  /** \brief Unite what is linked, from one slot on.
-   *
-   * Links go both ways: once most of the ball is known to be one group, those of the other slots tell the rest.
-   */
+  static constexpr int UNKNOWN = -1, STRANGER = -2; // groups
+
+  /** \brief The slots of those close to a node that do not fit to it. */
   void
-  groupFrom (int start, DisjointSets &groups)
+  listStrangers (int node)
   {
-    const auto size = static_cast<int> (ball_.size ());
-    std::vector<char> is_done (ball_.size (), 0);
-    int in_group = 0;
-    for (int step = 0; step < size && 2 * in_group <= size; ++step)
-    {
-      const int slot = (start + step) % size;
-      uniteLinked (slot, groups);
-      is_done[static_cast<std::size_t> (slot)] = 1;
-      in_group = 0;
-      for (int other = 0; other < size; ++other)
-        in_group += groups.find (other) == groups.find (start) ? 1 : 0;
-    }
-    for (int slot = 0; slot < size; ++slot)
-      if (!is_done[static_cast<std::size_t> (slot)] && groups.find (slot) != groups.find (start))
-        uniteLinked (slot, groups);
+    const double reach = options_.separation_reach * options_.separation_reach;
+    strangers_.clear ();
+    for (std::size_t slot = 0; slot < ball_.size (); ++slot)
+      if (static_cast<double> (squared_[slot]) <= reach && !test_.areSmooth (node, ball_[slot]))
+        strangers_.push_back (static_cast<int> (slot));
   }
 
-  void
-  uniteLinked (int slot, DisjointSets &groups)
+  /** \brief Of the strangers those that are of other groups than \a own; all groups must be large enough.
+   *
+   * Groups are followed from their ends only as far as it takes.
+   */
+  std::vector<int>
+  groupsOfStrangers (int own)
   {
-    for (const int j : links_[static_cast<std::size_t> (ball_[static_cast<std::size_t> (slot)])])
-      if (slots_[static_cast<std::size_t> (j)] >= 0)
-        groups.unite (slot, slots_[static_cast<std::size_t> (j)]);
+    std::vector<int> others;
+    groups_.assign (static_cast<std::size_t> (options_.ball) + 1, UNKNOWN);
+    groups_.back () = 0; // nothing outside is ever taken up
+    auto unknown = strangers_.size ();
+    for (const int stranger : strangers_)
+      groups_[static_cast<std::size_t> (stranger)] = STRANGER;
+    const auto has_found_all = [&] (int, bool is_stranger) { return (unknown -= is_stranger ? 1 : 0) == 0; };
+    const int size = follow (own, 0, has_found_all);
+    if (unknown == 0 || size < options_.smallest)
+      return others;
+    const auto is_large = [&] (int count, bool) { return count >= options_.smallest; };
+    std::vector<char> counts{1}; // per group whether it is large enough
+    for (const int stranger : strangers_)
+    {
+      int group = groups_[static_cast<std::size_t> (stranger)];
+      if (group < 0)
+      {
+        group = static_cast<int> (counts.size ());
+        const int members = follow (stranger, group, is_large);
+        // A group that was left as large enough may be met again from another end.
+        counts.push_back (members >= options_.smallest || meets_other_ ? 1 : 0);
+      }
+      if (group > 0 && counts[static_cast<std::size_t> (group)])
+        others.push_back (stranger);
+    }
+    return others;
+  }
+
+  /** \brief Follow the links from a slot, and give all that are reached to a group.
+   * \param[in] is_enough told the number of slots reached and whether the last one was a stranger; true: stop
+   * \return number of slots reached
+   */
+  template <typename IsEnoughT>
+  int
+  follow (int start, int group, IsEnoughT is_enough)
+  {
+    int count = 0;
+    meets_other_ = false;
+    front_.clear ();
+    const auto take = [&] (int slot)
+    {
+      const bool is_stranger = std::exchange (groups_[static_cast<std::size_t> (slot)], group) == STRANGER;
+      front_.push_back (slot);
+      return is_enough (++count, is_stranger);
+    };
+    if (take (start))
+      return count;
+    for (std::size_t next = 0; next < front_.size (); ++next)
+    {
+      listUnknown (links_[static_cast<std::size_t> (ball_[static_cast<std::size_t> (front_[next])])], group);
+      for (const int slot : linked_)
+        if (take (slot))
+          return count;
+    }
+    return count;
+  }
+
+  /** \brief Those of the links that lead to slots of no group yet; without branches, which none could foretell. */
+  void
+  listUnknown (const std::vector<int> &links, int group)
+  {
+    linked_.resize (links.size ());
+    std::size_t kept = 0;
+    int others = 0;
+    for (const int j : links)
+    {
+      const int slot = slots_[static_cast<std::size_t> (j)], known = groups_[static_cast<std::size_t> (slot)];
+      linked_[kept] = slot;
+      kept += known < 0 ? 1 : 0;
+      others |= static_cast<int> (known > 0) & static_cast<int> (known != group);
+    }
+    linked_.resize (kept);
+    meets_other_ = meets_other_ || others != 0;
   }
 
   const OrientedPoints &points_;
@@ -201,9 +255,12 @@ private:
   const SegmentationOptions &options_;
   const SmoothnessTest test_;
   const NodeLists &links_;
-  std::vector<int> slots_; // place in the ball, -1 outside
+  std::vector<int> slots_; // place in the ball; that after the last outside
   std::vector<int> ball_;
   std::vector<float> squared_;
+  std::vector<int> strangers_, front_, linked_; // slots
+  std::vector<int> groups_;                     // of the slots, and of what is outside; 0 is the node's own
+  bool meets_other_ = false;                    // whether the group last followed is part of one that was left before
 };
 
 /** \brief For every node the nodes that must not be on its face; both see it so. */

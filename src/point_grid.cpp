@@ -152,6 +152,24 @@ PointGrid::sortIntoCells (const std::vector<Eigen::Vector3f> &positions, int thr
                   });
 }
 
+bool
+PointGrid::hasWithin (const Eigen::Vector3d &x, double radius) const
+{
+  bool has_one = false;
+  const Eigen::Vector3f center = x.cast<float> ();
+  const auto limit = static_cast<float> (radius * radius);
+  visitNear (
+      x, radius,
+      [&] (std::size_t first, std::size_t last)
+      {
+        for (std::size_t i = first; i < last && !has_one; ++i)
+          has_one =
+              (Eigen::Vector3f (coordinates_[0][i], coordinates_[1][i], coordinates_[2][i]) - center).squaredNorm () <=
+              limit;
+      });
+  return has_one;
+}
+
 void
 PointGrid::withinRadius (const Eigen::Vector3d &x, double radius, std::vector<std::pair<float, int>> &found) const
 {

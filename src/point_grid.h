@@ -95,6 +95,10 @@ public:
                });
   }
 
+  /** \brief Whether there is a point within \a radius of \a x. */
+  bool
+  hasWithin (const Eigen::Vector3d &x, double radius) const;
+
   /** \brief The \a k points nearest to \a x with their squared distances, in no order; fewer where there are fewer. */
   void
   nearestK (const Eigen::Vector3d &x, int k, std::vector<std::pair<float, int>> &found) const;

@@ -8,6 +8,7 @@
 #include "noise.h"
 #include "normal_smoothing.h"
 #include "text.h"
+#include "threads.h"
 
 #include <Eigen/Geometry>
 
@@ -193,10 +194,30 @@ thinOut (const std::vector<Separation> &separations, double cell)
   return thinned;
 }
 
+/** \brief How far the k-th node is from each separation. */
+std::vector<double>
+radiiAt (const std::vector<Separation> &separations, const NeighborSearch &search, int k, int threads)
+{
+  struct Found
+  {
+    std::vector<int> nodes;
+    std::vector<float> squared;
+  };
+  std::vector<double> radii (separations.size ());
+  parallelFor (
+      separations.size (), threads, [] { return Found (); },
+      [&] (Found &found, std::size_t i)
+      {
+        search.nearestK (separations[i].position, k, found.nodes, found.squared);
+        radii[i] = std::sqrt (static_cast<double> (*std::max_element (found.squared.begin (), found.squared.end ())));
+      });
+  return radii;
+}
+
 /** \brief Gathers separations into stretches; those too short to be an edge and folds are dropped. */
 std::vector<Stretch>
 gatherStretches (const OrientedPoints &points, const NeighborSearch &search, const FaceSegmentation &found,
-                 const SegmentationOptions &options, int k)
+                 const SegmentationOptions &options, int k, int threads)
 {
   constexpr double STEP = 0.5, REACH = 1.1; // spacings; support radii
   const double shortest = (k > CLEAN_SUPPORT ? 4.0 : 2.0) * options.spacing;
@@ -204,9 +225,8 @@ gatherStretches (const OrientedPoints &points, const NeighborSearch &search, con
   DisjointSets chains = chainSeparations (separations, options.link_reach * options.spacing);
   const std::map<int, float> lengths = lengthsOf (separations, chains);
   std::map<int, std::size_t> numbers;
+  const std::vector<double> radii = radiiAt (separations, search, k, threads);
   std::vector<Stretch> stretches;
-  std::vector<int> nearest;
-  std::vector<float> squared;
   for (std::size_t i = 0; i < separations.size (); ++i)
   {
     const int chain = chains.find (static_cast<int> (i));
@@ -217,9 +237,7 @@ gatherStretches (const OrientedPoints &points, const NeighborSearch &search, con
       stretches.push_back ({separations[i].face, separations[i].other, {}, 0.0});
     Stretch &stretch = stretches[number->second];
     stretch.places.emplace_back (separations[i].position.cast<double> () + points.origin);
-    search.nearestK (separations[i].position, k, nearest, squared);
-    const double radius = std::sqrt (static_cast<double> (*std::max_element (squared.begin (), squared.end ())));
-    stretch.reach = std::max (stretch.reach, REACH * radius);
+    stretch.reach = std::max (stretch.reach, REACH * radii[i]);
   }
   FoldTest test (points, search, found.faces, options.spacing);
   stretches.erase (std::remove_if (stretches.begin (), stretches.end (),
@@ -230,22 +248,27 @@ gatherStretches (const OrientedPoints &points, const NeighborSearch &search, con
 
 /** \brief Marks the nodes that fits near the stretches can reach: the others need no face. */
 std::vector<char>
-markNear (const OrientedPoints &points, const NeighborSearch &search, const std::vector<Stretch> &stretches)
+markNear (const OrientedPoints &points, const std::vector<Stretch> &stretches, int threads)
 {
   constexpr double FITS = 3.5; // in reaches, which are about a support radius each
+  std::vector<Eigen::Vector3f> places;
   double reach = 0.0;
   for (const Stretch &stretch : stretches)
-    reach = std::max (reach, stretch.reach);
-  std::vector<char> is_near (points.size (), 0);
-  std::vector<int> found;
-  std::vector<float> squared;
-  for (const Stretch &stretch : stretches)
+  {
+    reach = std::max (reach, FITS * stretch.reach);
     for (const Eigen::Vector3d &place : stretch.places)
-    {
-      search.withinRadius ((place - points.origin).cast<float> (), FITS * reach, found, squared);
-      for (const int node : found)
-        is_near[static_cast<std::size_t> (node)] = 1;
-    }
+      places.emplace_back ((place - points.origin).cast<float> ());
+  }
+  std::vector<char> is_near (points.size (), 0);
+  if (places.empty ())
+    return is_near;
+  const PointGrid grid (places, reach, threads);
+  parallelRanges (points.size (), threads,
+                  [&] (std::size_t first, std::size_t last)
+                  {
+                    for (std::size_t i = first; i < last; ++i)
+                      is_near[i] = grid.hasWithin (points.positions[i].cast<double> (), reach) ? 1 : 0;
+                  });
   return is_near;
 }
 
@@ -262,8 +285,8 @@ findSharpSurfaces (const OrientedPoints &points, const NeighborSearch &search, c
   const int k = chooseSupportSize (points, search);
   const SegmentationOptions segmentation = optionsFor (points, search, options.angle, k, threads);
   const FaceSegmentation found = segmentFaces (points, search, segmentation, threads);
-  const std::vector<Stretch> stretches = gatherStretches (points, search, found, segmentation, k);
-  const std::vector<SharpSurface::ConstPtr> faces = makeFaces (points, found, markNear (points, search, stretches), k);
+  const std::vector<Stretch> stretches = gatherStretches (points, search, found, segmentation, k, threads);
+  const std::vector<SharpSurface::ConstPtr> faces = makeFaces (points, found, markNear (points, stretches, threads), k);
   for (const Stretch &stretch : stretches)
   {
     const auto &face = faces[static_cast<std::size_t> (stretch.face)];
