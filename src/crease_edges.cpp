@@ -207,25 +207,32 @@ private:
   bool
   untangle ()
   {
+    constexpr double MARGIN = 1e-5; // voxels
     if (loops_.empty () && vertices_.found.empty ())
       return false;
     std::vector<Triangle> triangles = triangles_;
+    std::vector<Eigen::Vector3d> positions = vertices_.positions;
     std::vector<int> owners (triangles.size (), -1), suspects;
     for (std::size_t i = 0; i < loops_.size (); ++i)
     {
       if (on_crease_[i])
         addCreaseFan (i, triangles);
-      else
-        triangulateCell (loops_[i], vertices_, triangles);
+      else if (!triangulateCell (loops_[i], vertices_, triangles))
+      {
+        addFan (loops_[i].ring, static_cast<int> (positions.size ()), triangles);
+        positions.push_back (middleOf (loops_[i].ring));
+      }
       owners.resize (triangles.size (), on_crease_[i] ? static_cast<int> (i) : -1);
     }
+    const auto is_in_middle = [this] (int v) { return static_cast<std::size_t> (v) >= vertices_.positions.size (); };
     for (std::size_t t = 0; t < triangles.size (); ++t)
-      if (owners[t] >= 0 ||
+      if (owners[t] >= 0 || std::any_of (triangles[t].begin (), triangles[t].end (), is_in_middle) ||
           std::any_of (triangles[t].begin (), triangles[t].end (), [this] (int v) { return isMoved (v); }))
         suspects.push_back (static_cast<int> (t));
     std::set<int> touched; // one change in a place at a time: it may be enough
     const auto is_touched = [&touched] (int v) { return touched.count (v) > 0; };
-    for (const auto &[one, other] : findIntersections (vertices_.positions, triangles, suspects, voxel_, threads_))
+    for (const auto &[one, other] :
+         findIntersections (positions, triangles, suspects, voxel_, MARGIN * voxel_, threads_))
     {
       const auto t = static_cast<std::size_t> (one), u = static_cast<std::size_t> (other);
       const Triangle &first = triangles[t], &second = triangles[u];
@@ -285,10 +292,7 @@ private:
   double
   offsetOf (int loop) const
   {
-    const std::vector<int> &ring = loops_[static_cast<std::size_t> (loop)].ring;
-    Eigen::Vector3d middle = Eigen::Vector3d::Zero ();
-    for (const int v : ring)
-      middle += vertices_.positions[static_cast<std::size_t> (v)] / static_cast<double> (ring.size ());
+    const Eigen::Vector3d middle = middleOf (loops_[static_cast<std::size_t> (loop)].ring);
     return (vertices_.positions[static_cast<std::size_t> (center (loop))] - middle).norm ();
   }
 
@@ -298,7 +302,7 @@ private:
     if (on_crease_[loop])
       addCreaseFan (loop, triangles_);
     else if (!triangulateCell (loops_[loop], vertices_, triangles_))
-      addFan (loops_[loop].ring, middleOf (loop), triangles_);
+      addFan (loops_[loop].ring, appendMiddle (loop), triangles_);
   }
 
   void
@@ -317,19 +321,25 @@ private:
     }
   }
 
+  Eigen::Vector3d
+  middleOf (const std::vector<int> &ring) const
+  {
+    Eigen::Vector3d middle = Eigen::Vector3d::Zero ();
+    for (const int v : ring)
+      middle += vertices_.positions[static_cast<std::size_t> (v)] / static_cast<double> (ring.size ());
+    return middle;
+  }
+
   /** \brief A vertex in the middle of a loop that needs one. */
   int
-  middleOf (std::size_t loop)
+  appendMiddle (std::size_t loop)
   {
     const std::vector<int> &ring = loops_[loop].ring;
     MeshedLoop middle = meshed_[loop];
-    middle.position.setZero ();
+    middle.position = middleOf (ring);
     middle.normal.setZero ();
     for (const int v : ring)
-    {
-      middle.position += vertices_.positions[static_cast<std::size_t> (v)] / static_cast<double> (ring.size ());
       middle.normal += normal (v);
-    }
     middle.normal.normalize ();
     const auto first = static_cast<std::size_t> (ring[0]);
     const std::size_t channels = vertices_.attributes.size () / vertices_.positions.size ();

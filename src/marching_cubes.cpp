@@ -71,6 +71,8 @@ meshCentered (const std::vector<CellLoop> &loops, std::vector<Triangle> &triangl
       middle += vertices.positions[static_cast<std::size_t> (v)] / static_cast<double> (loop.ring.size ());
     addFan (loop.ring, static_cast<int> (vertices.positions.size ()), triangles);
     vertices.positions.push_back (middle);
+    if (!vertices.found.empty ())
+      vertices.found.push_back (middle);
   }
 }
 
