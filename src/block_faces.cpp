@@ -213,6 +213,7 @@ BlockFaces::takeUp (std::size_t i, Part &part) const
   part.value = at_part_.values[i];
   part.radius = at_part_.radii[i];
   part.aside = at_part_.asides[i];
+  part.nearest = at_part_.nearest_distances[i];
   if (part.state == lanes::State::UNDEFINED)
     return;
   part.face = field_.faces ()->faceOf (of_part_.node (at_part_.nearest[i]));
@@ -266,8 +267,9 @@ BlockFaces::vote (BlockPoints &points, std::uint32_t point, Combined &combined)
       heights_.push_back (heightAt (part, voter.u * (radius / own_radius)));
     const Eigen::Vector3d slope =
         Eigen::Vector3f (part.coefficients[1], part.coefficients[2], part.coefficients[3]).cast<double> () / own_radius;
-    vote_.addFace (group, static_cast<double> (part.value), slope, heights_);
+    vote_.addFace (group, static_cast<double> (part.value), slope, static_cast<double> (part.nearest), heights_);
   }
+  vote_.dropFarFaces ();
   points.states[point] = lanes::State::UNDEFINED;
   points.values[point] = std::nanf ("");
   double aside = static_cast<double> (points.asides[point]);

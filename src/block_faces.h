@@ -108,7 +108,7 @@ private:
     std::uint64_t faces; // of the group, as bits: places among those present
     lanes::State state;
     int face;
-    float value, radius, aside, border_offset;
+    float value, radius, nearest, aside, border_offset;
     Eigen::Vector3f gradient;
     std::array<float, MAX_TERMS> coefficients;
   };

@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "face_vote.h"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstddef>
 
 namespace erkpa
 {
@@ -15,16 +17,46 @@ FaceVote::start (double radius)
   groups_.clear ();
   values_.clear ();
   slopes_.clear ();
+  distances_.clear ();
   heights_.clear ();
 }
 
 void
-FaceVote::addFace (int group, double value, const Eigen::Vector3d &slope, const std::vector<double> &heights)
+FaceVote::addFace (int group, double value, const Eigen::Vector3d &slope, double distance,
+                   const std::vector<double> &heights)
 {
+  distances_.push_back (distance);
   groups_.push_back (group);
   values_.push_back (value);
   slopes_.push_back (slope);
   heights_.insert (heights_.end (), heights.begin (), heights.end ());
+}
+
+void
+FaceVote::dropFarFaces ()
+{
+  constexpr double FAR = 1.3; // ε
+  const double limit = FAR * radius_;
+  if (std::all_of (distances_.begin (), distances_.end (), [limit] (double distance) { return distance > limit; }))
+    return;
+  std::size_t kept = 0;
+  const std::size_t voters = voters_.size ();
+  for (std::size_t f = 0; f < groups_.size (); ++f)
+  {
+    if (distances_[f] > limit)
+      continue;
+    groups_[kept] = groups_[f];
+    values_[kept] = values_[f];
+    slopes_[kept] = slopes_[f];
+    distances_[kept] = distances_[f];
+    std::copy_n (heights_.data () + f * voters, voters, heights_.data () + kept * voters);
+    ++kept;
+  }
+  groups_.resize (kept);
+  values_.resize (kept);
+  slopes_.resize (kept);
+  distances_.resize (kept);
+  heights_.resize (kept * voters);
 }
 
 const FaceTree &

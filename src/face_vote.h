@@ -59,9 +59,16 @@ public:
     return radius_;
   }
 
-  /** \brief What the fit of a face says: at x, of its slope there, and at each voter. */
+  /** \brief What the fit of a face says: at x, of its slope there, and at each voter.
+   * \param[in] distance from x to the nearest node of the face
+   */
   void
-  addFace (int group, double value, const Eigen::Vector3d &slope, const std::vector<double> &heights);
+  addFace (int group, double value, const Eigen::Vector3d &slope, double distance, const std::vector<double> &heights);
+
+  /** \brief Forget the faces that end far from x, unless all do: what their fits say out there is not to be relied on,
+   * and would close gaps and make flaps where the data ends. */
+  void
+  dropFarFaces ();
 
   bool
   isEmpty () const
@@ -117,6 +124,7 @@ private:
   std::vector<int> groups_;             // of the faces
   std::vector<double> values_;          // at x
   std::vector<Eigen::Vector3d> slopes_; // at x
+  std::vector<double> distances_;       // of their nearest nodes from x
   std::vector<double> heights_;         // at the voters, face after face
 };
 

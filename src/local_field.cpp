@@ -182,7 +182,8 @@ LocalField::evaluateFaces (const Eigen::Vector3d &x, Task task)
   const std::vector<int> &parts = groups_.groupsOfSlots ();
   for (int group = 0; group < count; ++group)
     if (support_.selectPart (x, parts, group) && fitSelected (x, Task::HEIGHTS))
-      vote_.addFace (group, result_.value, slope_, heights_);
+      vote_.addFace (group, result_.value, slope_, nearestInSupport (), heights_);
+  vote_.dropFarFaces ();
   result_ = FieldSample ();
   thickening_ = 0.0;
   if (!vote_.isEmpty ())
@@ -260,6 +261,15 @@ LocalField::sharpSurfaceAt (const Eigen::Vector3d &x)
     }
   }
   return best;
+}
+
+double
+LocalField::nearestInSupport () const
+{
+  double nearest = HUGE_VAL;
+  for (const SupportNode &node : support_.nodes ())
+    nearest = std::min (nearest, node.u.squaredNorm ());
+  return std::sqrt (nearest) * support_.radius ();
 }
 
 /** \brief Face of the nearest node in the support selected. */

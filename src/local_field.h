@@ -191,6 +191,10 @@ private:
   int
   nearestFace () const;
 
+  /** \brief Distance of the nearest value point in the support selected. */
+  double
+  nearestInSupport () const;
+
   void
   gatherUnwarped (const Eigen::Vector3d &center, double extent);
 
