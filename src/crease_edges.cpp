@@ -207,44 +207,62 @@ private:
   bool
   untangle ()
   {
-    constexpr double MARGIN = 1e-5; // voxels
     if (loops_.empty () && vertices_.found.empty ())
       return false;
-    std::vector<Triangle> triangles = triangles_;
-    std::vector<Eigen::Vector3d> positions = vertices_.positions;
-    std::vector<int> owners (triangles.size (), -1), suspects;
-    for (std::size_t i = 0; i < loops_.size (); ++i)
-    {
-      if (on_crease_[i])
-        addCreaseFan (i, triangles);
-      else if (!triangulateCell (loops_[i], vertices_, triangles))
-      {
-        addFan (loops_[i].ring, static_cast<int> (positions.size ()), triangles);
-        positions.push_back (middleOf (loops_[i].ring));
-      }
-      owners.resize (triangles.size (), on_crease_[i] ? static_cast<int> (i) : -1);
-    }
-    const auto is_in_middle = [this] (int v) { return static_cast<std::size_t> (v) >= vertices_.positions.size (); };
-    for (std::size_t t = 0; t < triangles.size (); ++t)
-      if (owners[t] >= 0 || std::any_of (triangles[t].begin (), triangles[t].end (), is_in_middle) ||
-          std::any_of (triangles[t].begin (), triangles[t].end (), [this] (int v) { return isMoved (v); }))
+    const Draft draft = makeDraft ();
+    std::vector<int> suspects;
+    const auto is_outside = [this] (int v) { return isMoved (v) || isExtra (v); };
+    for (std::size_t t = 0; t < draft.triangles.size (); ++t)
+      if (draft.owners[t] >= 0 || std::any_of (draft.triangles[t].begin (), draft.triangles[t].end (), is_outside))
         suspects.push_back (static_cast<int> (t));
     std::set<int> touched; // one change in a place at a time: it may be enough
     const auto is_touched = [&touched] (int v) { return touched.count (v) > 0; };
-    for (const auto &[one, other] :
-         findIntersections (positions, triangles, suspects, voxel_, MARGIN * voxel_, threads_))
+    for (const auto &[one, other] : findIntersections (draft.positions, draft.triangles, suspects, voxel_, threads_))
     {
       const auto t = static_cast<std::size_t> (one), u = static_cast<std::size_t> (other);
-      const Triangle &first = triangles[t], &second = triangles[u];
+      const Triangle &first = draft.triangles[t], &second = draft.triangles[u];
       if (std::any_of (first.begin (), first.end (), is_touched) ||
           std::any_of (second.begin (), second.end (), is_touched))
         continue;
-      if (!giveUpCrease (owners[t], owners[u]) && !putBackFarthest (first, second))
+      if (!giveUpCrease (draft.owners[t], draft.owners[u]) && !putBackFarthest (first, second))
         continue;
       touched.insert (first.begin (), first.end ());
       touched.insert (second.begin (), second.end ());
     }
     return !touched.empty ();
+  }
+
+  /** \brief The mesh as it would be. */
+  struct Draft
+  {
+    std::vector<Triangle> triangles;
+    std::vector<Eigen::Vector3d> positions; // with those of vertices that are to be made
+    std::vector<int> owners;                // per triangle the loop whose crease vertex it has; -1 for none
+  };
+
+  Draft
+  makeDraft () const
+  {
+    Draft draft{triangles_, vertices_.positions, std::vector<int> (triangles_.size (), -1)};
+    for (std::size_t i = 0; i < loops_.size (); ++i)
+    {
+      if (on_crease_[i])
+        addCreaseFan (i, draft.triangles);
+      else if (!triangulateCell (loops_[i], vertices_, draft.triangles))
+      {
+        addFan (loops_[i].ring, static_cast<int> (draft.positions.size ()), draft.triangles);
+        draft.positions.push_back (middleOf (loops_[i].ring));
+      }
+      draft.owners.resize (draft.triangles.size (), on_crease_[i] ? static_cast<int> (i) : -1);
+    }
+    return draft;
+  }
+
+  /** \brief Whether a vertex of a draft is still to be made. */
+  bool
+  isExtra (int v) const
+  {
+    return static_cast<std::size_t> (v) >= vertices_.positions.size ();
   }
 
   /** \brief Whether a vertex of a thin wall was moved from the edge of the grid it was found on. */

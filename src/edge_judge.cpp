@@ -14,6 +14,7 @@ using Eigen::Vector3d;
 
 // Lengths are in voxels, angles given by their sines or cosines.
 constexpr double TINY = 0.1;        // sides so short that it does not matter where their triangles look
+constexpr double JOINT = 0.02;      // ends so close that it does not matter where the surface looks: nothing moves
 constexpr double OFF_CREASE = 0.03; // how far a crease may move sideways
 constexpr double OFF_SURFACE =
     0.05; // how far the surface may move: a vertex off the new triangles, the diagonals of a flip
@@ -60,6 +61,7 @@ EdgeJudge::sineAfterCollapse (int h) const
   if (movesCrease (h) || !edges_.canCollapse (h))
     return -1.0;
   const double tiny = squaredLength (h) < TINY * TINY * voxel_ * voxel_ ? TINY * TINY * voxel_ * voxel_ : 0.0;
+  const bool is_joint = squaredLength (h) < JOINT * JOINT * voxel_ * voxel_;
   const Vector3d step = at (to) - at (from), towards_ends = facing (from) + facing (to);
   double sine = 1.0, sine_before = 1.0, steady = 1.0, steady_before = 1.0; // the least of the triangles around
   edges_.around (from,
@@ -80,12 +82,15 @@ EdgeJudge::sineAfterCollapse (int h) const
                      return; // is going to collapse, too
                    sine = std::min (sine, after.sine);
                    const bool moves = std::abs (after.area.dot (step)) > OFF_SURFACE * voxel_ * after.area.norm ();
-                   if (moves || (before.sine >= WELL_SHAPED && cosine (before.area, after.area) < STEADY))
+                   if (is_joint)
+                     steady = std::min (steady, cosine (before.area, after.area));
+                   else if (moves || (before.sine >= WELL_SHAPED && cosine (before.area, after.area) < STEADY))
                      steady = -1.0;
                    else if (before.sine < WELL_SHAPED || !towards.isZero (0.0))
                      steady = std::min (steady, cosine (after.area, towards));
                  });
-  return isSteady (steady_before, steady) && sine >= std::min (WELL_SHAPED, sine_before) ? sine : -1.0;
+  const bool is_steady = is_joint ? steady >= STEADY : isSteady (steady_before, steady);
+  return is_steady && sine >= std::min (WELL_SHAPED, sine_before) ? sine : -1.0;
 }
 
 bool

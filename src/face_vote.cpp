@@ -35,7 +35,7 @@ FaceVote::addFace (int group, double value, const Eigen::Vector3d &slope, double
 void
 FaceVote::dropFarFaces ()
 {
-  constexpr double FAR = 1.3; // ε
+  constexpr double FAR = 1.35; // ε
   const double limit = FAR * radius_;
   if (std::all_of (distances_.begin (), distances_.end (), [limit] (double distance) { return distance > limit; }))
     return;

@@ -71,8 +71,6 @@ meshCentered (const std::vector<CellLoop> &loops, std::vector<Triangle> &triangl
       middle += vertices.positions[static_cast<std::size_t> (v)] / static_cast<double> (loop.ring.size ());
     addFan (loop.ring, static_cast<int> (vertices.positions.size ()), triangles);
     vertices.positions.push_back (middle);
-    if (!vertices.found.empty ())
-      vertices.found.push_back (middle);
   }
 }
 
@@ -220,11 +218,11 @@ polygonize (const ImplicitField &field, const PolygonizerOptions &options, Trian
   SurfaceVertices vertices;
   placeVertices (field, options, grid, vertices, report, partOf (progress, 0.5, 0.5));
 
-  const std::size_t on_edges = vertices.positions.size ();
   CellMesh cell_mesh = meshCells (grid, tracker.activeCells (), options.threads, vertices);
+  const std::size_t at_middles = vertices.positions.size ();
   std::vector<Triangle> triangles = std::move (cell_mesh.triangles);
   meshCentered (cell_mesh.centered_loops, triangles, vertices);
-  projectVertices (field, options, on_edges, 0.3 * voxel, vertices, report);
+  projectVertices (field, options, at_middles, 0.3 * voxel, vertices, report);
   const std::vector<MeshedLoop> loops = meshLoops (field, options, cell_mesh.mixed_loops, voxel, vertices, report);
   std::vector<VertexPair> creases =
       addCreases (voxel, cell_mesh.mixed_loops, loops, options.threads, triangles, vertices);

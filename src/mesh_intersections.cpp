@@ -33,32 +33,34 @@ hasVertex (const Triangle &triangle, int vertex)
   return std::find (triangle.begin (), triangle.end (), vertex) != triangle.end ();
 }
 
-/** \brief Whether the line from p to q passes through a triangle, or touches it within a margin without lying in it. */
-bool
-pierces (const Vector3d &p, const Vector3d &q, const Vector3d &a, const Vector3d &b, const Vector3d &c, double margin)
+/** \brief Six times the volume of the tetrahedron over a triangle, positive on the side its normal points to. */
+double
+volume (const Vector3d &a, const Vector3d &b, const Vector3d &c, const Vector3d &tip)
 {
-  constexpr double IN_PLANE = 100.0; // margins
-  const Vector3d normal = (b - a).cross (c - a);
-  const double from = normal.dot (p - a), to = normal.dot (q - a), touch = margin * normal.norm ();
-  const double near = std::min (std::abs (from), std::abs (to)), far = std::max (std::abs (from), std::abs (to));
-  if (!(from * to < 0.0) && !(near < touch && far > IN_PLANE * touch))
+  return (b - a).cross (c - a).dot (tip - a);
+}
+
+/** \brief Whether the line from p to q passes through the inside of a triangle. */
+bool
+pierces (const Vector3d &p, const Vector3d &q, const Vector3d &a, const Vector3d &b, const Vector3d &c)
+{
+  const double from = volume (a, b, c, p), to = volume (a, b, c, q);
+  if (!(from * to < 0.0))
     return false;
-  const Vector3d x = p + std::clamp (from / (from - to), 0.0, 1.0) * (q - p);
-  const auto is_inside = [&] (const Vector3d &u, const Vector3d &v)
-  { return normal.dot ((v - u).cross (x - u)) > -touch * (v - u).norm (); };
-  return is_inside (a, b) && is_inside (b, c) && is_inside (c, a);
+  const double ab = volume (p, q, a, b), bc = volume (p, q, b, c), ca = volume (p, q, c, a);
+  return (ab > 0.0 && bc > 0.0 && ca > 0.0) || (ab < 0.0 && bc < 0.0 && ca < 0.0);
 }
 
 /** \brief Whether a side of one triangle passes through the other; sides that end at it are left out. */
 bool
-hasPiercingSide (const Positions &positions, const Triangle &one, const Triangle &other, double margin)
+hasPiercingSide (const Positions &positions, const Triangle &one, const Triangle &other)
 {
   for (std::size_t i = 0; i < 3; ++i)
   {
     const int p = one[i], q = one[(i + 1) % 3];
     if (!hasVertex (other, p) && !hasVertex (other, q) &&
         pierces (at (positions, p), at (positions, q), at (positions, other[0]), at (positions, other[1]),
-                 at (positions, other[2]), margin))
+                 at (positions, other[2])))
       return true;
   }
   return false;
@@ -101,17 +103,17 @@ visitCells (const Box &box, double cell, VisitT visit)
 } // namespace
 
 bool
-passThrough (const Positions &positions, const Triangle &one, const Triangle &other, double margin)
+passThrough (const Positions &positions, const Triangle &one, const Triangle &other)
 {
   const auto is_shared = [&] (int v) { return hasVertex (other, v); };
   if (std::count_if (one.begin (), one.end (), is_shared) > 1)
     return false;
-  return hasPiercingSide (positions, one, other, margin) || hasPiercingSide (positions, other, one, margin);
+  return hasPiercingSide (positions, one, other) || hasPiercingSide (positions, other, one);
 }
 
 std::vector<std::pair<int, int>>
 findIntersections (const Positions &positions, const std::vector<Triangle> &triangles, const std::vector<int> &suspects,
-                   double cell, double margin, int threads)
+                   double cell, int threads)
 {
   std::unordered_map<std::uint64_t, std::vector<int>> cells;
   std::vector<char> is_suspect (triangles.size (), 0);
@@ -134,7 +136,7 @@ findIntersections (const Positions &positions, const std::vector<Triangle> &tria
                   for (const int s : found->second)
                     if ((!is_suspect[t] || s < static_cast<int> (t)) &&
                         box.meets (Box (positions, triangles[static_cast<std::size_t> (s)])) &&
-                        passThrough (positions, triangles[static_cast<std::size_t> (s)], triangles[t], margin))
+                        passThrough (positions, triangles[static_cast<std::size_t> (s)], triangles[t]))
                       pairs.emplace_back (s, static_cast<int> (t));
                 });
   };

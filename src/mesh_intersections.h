@@ -12,21 +12,19 @@ namespace erkpa
 
 /** \brief Whether two triangles of a mesh pass through each other beside the vertices they share.
  *
- * Those that share an edge never do: they fold at most. Touching counts where there is a margin.
- * \param[in] margin how far they may be apart, a length: rounded to floats they may touch
+ * Those that share an edge never do: they fold at most. Touching does not count.
  */
 bool
 passThrough (const std::vector<Eigen::Vector3d> &positions, const std::array<int, 3> &one,
-             const std::array<int, 3> &other, double margin = 0.0);
+             const std::array<int, 3> &other);
 
 /** \brief The pairs of triangles that pass through each other, of which the first is one of the \a suspects.
  * \param[in] suspects places in \a triangles
  * \param[in] cell about the length of the triangles' sides
- * \param[in] margin see passThrough
  * \return places in \a triangles; pairs of two suspects once, sorted
  */
 std::vector<std::pair<int, int>>
 findIntersections (const std::vector<Eigen::Vector3d> &positions, const std::vector<std::array<int, 3>> &triangles,
-                   const std::vector<int> &suspects, double cell, double margin, int threads);
+                   const std::vector<int> &suspects, double cell, int threads);
 
 } // namespace erkpa

@@ -315,7 +315,7 @@ findRough (const NeighborSearch &search, const NormalScale &scale, int threads, 
 RoughPieces
 gatherPieces (const NeighborSearch &search, const OrientedPoints &points, const std::vector<std::size_t> &rough, int k)
 {
-  constexpr std::size_t PIECES = 32, NODES = 3000; // at most, and about
+  constexpr std::size_t PIECES = 64, NODES = 6000; // at most, and about
   constexpr int AROUND = 5;                        // times the neighbours of a fit
   const std::size_t count = std::clamp<std::size_t> (NODES / static_cast<std::size_t> (AROUND * k), 1, PIECES);
   const std::size_t step = (rough.size () + count - 1) / count;

@@ -21,8 +21,7 @@ struct SurfaceVertices
   std::vector<int> faces;               ///< face whose piece of f the vertex is on; -1 where there are none
   std::vector<std::uint64_t> side_keys; ///< see LocalField::sideKey ()
   std::vector<float> attributes;        ///< channels values per vertex
-  std::vector<Eigen::Vector3d> found;   ///< where there are faces: of those on edges of the grid and in the middle of
-                                        ///< loops, where; thin walls and projections move them from there
+  std::vector<Eigen::Vector3d> found;   ///< of those on edges of the grid, where; thin walls move them from there
 
   void
   resize (std::size_t size, int channels)

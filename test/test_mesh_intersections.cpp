@@ -34,28 +34,13 @@ TEST (MeshIntersections, OfTrianglesThatShareAVertexAreThoseBeyondIt)
   EXPECT_FALSE (erkpa::passThrough (POINTS, FLAT, {0, 1, 4})) << "a common edge";
 }
 
-/** \brief Rounded to floats such triangles may pass through each other. */
-TEST (MeshIntersections, OfTrianglesThatTouchAreFoundWithAMargin)
-{
-  constexpr double MARGIN = 1e-4;
-  std::vector<Vector3d> points = POINTS;
-  points.insert (points.end (),
-                 {{0.5, -1e-5, 0.0}, {0.5, 0.2, 0.5}, {0.6, 0.2, 0.5}, {1.5, 0.0, 0.0}, {0.6, 0.3, 1e-6}});
-  const Triangle on_a_side{10, 11, 12};
-  EXPECT_FALSE (erkpa::passThrough (points, FLAT, on_a_side));
-  EXPECT_TRUE (erkpa::passThrough (points, FLAT, on_a_side, MARGIN));
-  EXPECT_FALSE (erkpa::passThrough (points, FLAT, {1, 13, 11}, MARGIN)) << "beyond the end of a side";
-  EXPECT_FALSE (erkpa::passThrough (points, FLAT, {1, 13, 7}, MARGIN)) << "in the line of a side";
-  EXPECT_FALSE (erkpa::passThrough (points, FLAT, {1, 13, 14}, MARGIN)) << "in its plane";
-}
-
 TEST (MeshIntersections, ComeWithASuspectFirstAndEachPairOnce)
 {
   const std::vector<Triangle> triangles{FLAT, {3, 4, 5}, {7, 8, 9}};
   for (const double cell : {0.05, 0.3, 10.0})
   {
-    EXPECT_EQ (erkpa::findIntersections (POINTS, triangles, {1}, cell, 0.0, 2), (Pairs{{1, 0}}));
-    EXPECT_EQ (erkpa::findIntersections (POINTS, triangles, {0, 1, 2}, cell, 0.0, 2), (Pairs{{0, 1}}));
-    EXPECT_TRUE (erkpa::findIntersections (POINTS, triangles, {2}, cell, 0.0, 2).empty ());
+    EXPECT_EQ (erkpa::findIntersections (POINTS, triangles, {1}, cell, 2), (Pairs{{1, 0}}));
+    EXPECT_EQ (erkpa::findIntersections (POINTS, triangles, {0, 1, 2}, cell, 2), (Pairs{{0, 1}}));
+    EXPECT_TRUE (erkpa::findIntersections (POINTS, triangles, {2}, cell, 2).empty ());
   }
 }

@@ -419,7 +419,7 @@ TEST (SharpEdges, ThatAreAcuteMakeNoTrianglesThatPassThroughEachOther)
     positions.emplace_back (v.cast<double> ());
   for (std::size_t t = 0; t < result.mesh.triangles.size (); ++t)
     all.push_back (static_cast<int> (t));
-  EXPECT_TRUE (erkpa::findIntersections (positions, result.mesh.triangles, all, 0.03, 0.0, 0).empty ());
+  EXPECT_TRUE (erkpa::findIntersections (positions, result.mesh.triangles, all, 0.03, 0).empty ());
 }
 
 TEST (SharpEdges, LeaveASheetItsBorderThoughAnotherGoesOnBesideIt)
