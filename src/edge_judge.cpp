@@ -1,7 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "edge_judge.h"
 
+#include "mesh_intersections.h"
+
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 namespace erkpa
@@ -11,6 +14,7 @@ namespace
 {
 
 using Eigen::Vector3d;
+using Triangle = std::array<int, 3>;
 
 // Lengths are in voxels, angles given by their sines or cosines.
 constexpr double TINY = 0.1;        // sides so short that it does not matter where their triangles look
@@ -78,8 +82,9 @@ EdgeJudge::sineAfterCollapse (int h) const
                    if (a == to || b == to)
                      return;
                    const TriangleShape after (at (to), at (a), at (b));
-                   if (after.shortest < tiny)
-                     return; // is going to collapse, too
+                   const bool may_collapse = isInside (to) && isInside (a) && isInside (b);
+                   if (after.shortest < tiny && may_collapse)
+                     return; // is going to, too
                    sine = std::min (sine, after.sine);
                    const bool moves = std::abs (after.area.dot (step)) > OFF_SURFACE * voxel_ * after.area.norm ();
                    if (is_joint)
@@ -90,7 +95,39 @@ EdgeJudge::sineAfterCollapse (int h) const
                      steady = std::min (steady, cosine (after.area, towards));
                  });
   const bool is_steady = is_joint ? steady >= STEADY : isSteady (steady_before, steady);
-  return is_steady && sine >= std::min (WELL_SHAPED, sine_before) ? sine : -1.0;
+  if (!is_steady || sine < std::min (WELL_SHAPED, sine_before))
+    return -1.0;
+  return entangles (h) ? -1.0 : sine;
+}
+
+bool
+EdgeJudge::entangles (int h) const
+{
+  const int from = edges_.start (h), to = edges_.end (h);
+  bool is_free = true; // from other parts of the surface, beyond a crease or a border
+  std::vector<Triangle> moved;
+  edges_.around (from,
+                 [&] (int side)
+                 {
+                   const int a = edges_.end (side), b = apex (side);
+                   is_free = is_free && isPlain (a) && isInside (a);
+                   if (a != to && b != to)
+                     moved.push_back ({to, a, b});
+                 });
+  if (is_free)
+    return false;
+  bool any = false;
+  const auto test = [&] (const Triangle &other)
+  {
+    if (!any && std::find (other.begin (), other.end (), from) == other.end ())
+      any = std::any_of (moved.begin (), moved.end (),
+                         [&] (const Triangle &triangle) { return passThrough (vertices_.positions, triangle, other); });
+  };
+  edges_.visitNeighbors (to,
+                         [&] (int v) {
+                           edges_.around (v, [&] (int side) { test ({v, edges_.end (side), apex (side)}); });
+                         });
+  return any;
 }
 
 bool

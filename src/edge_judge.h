@@ -90,10 +90,20 @@ private:
   }
 
   bool
+  isInside (int v) const
+  {
+    return edges_.place (v) == HalfEdges::Place::INSIDE;
+  }
+
+  bool
   isPlain (int v) const
   {
     return degrees_.empty () || degrees_[static_cast<std::size_t> (v)] == 0;
   }
+
+  /** \brief Whether the triangles that a collapse near a crease or border moves pass through others around its end. */
+  bool
+  entangles (int h) const;
 
   /** \brief Whether a collapse along this half-edge moves a crease, or an end or corner of one, off its place. */
   bool
