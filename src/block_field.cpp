@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "block_field.h"
 
+#include "enrichment.h"
 #include "support.h"
 #include "support_size.h"
 
@@ -98,7 +99,9 @@ BlockField::canEvaluate (const ImplicitField &field)
 BlockField::BlockField (const ImplicitField &field, const lanes::Engine &engine)
     : field_ (field), can_evaluate_ (canEvaluate (field)), engine_ (engine), unit_ (field.supportSize ().typical ()),
       inverse_unit_ (1.0 / unit_), settings_ (laneSettingsOf (field)), nodes_ (field, unit_),
-      points_ (static_cast<std::size_t> (field.points ().channels), 0), faces_ (field, engine, settings_, unit_)
+      faces_ (field, engine, settings_, unit_), enrichment_ (field, unit_),
+      plain_ (static_cast<std::size_t> (field.points ().channels), 0),
+      enriched_ (static_cast<std::size_t> (field.points ().channels), 0)
 {
   setReach (1.0, 0.0, 0.0);
 }
@@ -123,7 +126,7 @@ BlockField::gather (const Eigen::Vector3d &center, double extent)
   if (!findReach (center_, all))
     return false;
   has_separations_ = faces_.gather (center_, all);
-  gatherSharpSurfaces ();
+  enrichment_.gather (center_, reach_ + field_.largestOffset ());
   nodes_.copy ();
   return true;
 }
@@ -163,65 +166,63 @@ BlockField::findNodes (const Eigen::Vector3d &center, double reach)
   nodes_.find (center, reach);
 }
 
-/** \brief The sharp surfaces that may add terms somewhere in the ball. */
-void
-BlockField::gatherSharpSurfaces ()
+double
+BlockField::reachAt (const Eigen::Vector3d &x) const
 {
-  near_surfaces_.clear ();
-  const double reach = reach_ + field_.largestOffset ();
-  const Eigen::Vector3d center = center_ + field_.points ().origin;
-  for (const SharpSurface::ConstPtr &surface : field_.enrichingSurfaces ())
-  {
-    if (surface->isAbsentIn (center, reach))
-      continue;
-    const SpaceWarp *warp = nullptr;
-    const bool is_plane = planeBehind (*surface, &warp) != nullptr && warp == nullptr;
-    if (!is_plane || std::abs (surface->theta (center)) <= reach)
-      near_surfaces_.emplace_back (surface.get (), is_plane);
-  }
+  const bool is_function = field_.supportSize ().kind () == SupportSize::Kind::FUNCTION;
+  const double radius = (is_function ? reach_ : center_radius_) + (x - center_).norm ();
+  return (radius + field_.largestOffset ()) * (1.0 + ROUNDING);
 }
 
 bool
 BlockField::canEvaluateAt (const Eigen::Vector3d &x) const
 {
-  if (has_separations_ && !BlockFaces::canEvaluate (field_) && faces_.hasSeparationAt (x))
+  const bool is_at_faces = has_separations_ && faces_.hasSeparationAt (x);
+  if (is_at_faces && !BlockFaces::canEvaluate (field_))
     return false;
-  // All nodes in the support lie on one side of a plane that is farther than they are.
-  const bool is_function = field_.supportSize ().kind () == SupportSize::Kind::FUNCTION;
-  const double radius = (is_function ? reach_ : center_radius_) + (x - center_).norm ();
-  const double reach = (radius + field_.largestOffset ()) * (1.0 + ROUNDING);
-  return std::all_of (near_surfaces_.begin (), near_surfaces_.end (),
-                      [&] (const auto &near)
-                      { return near.second && std::abs (near.first->theta (x + field_.points ().origin)) > reach; });
+  const double reach = reachAt (x);
+  const bool by_nearest = field_.supportSize ().kind () == SupportSize::Kind::NEAREST;
+  return enrichment_.isAbsentAt (x, reach) || (!is_at_faces && by_nearest && enrichment_.canEvaluateAt (x, reach));
 }
 
 void
 BlockField::clearPoints ()
 {
-  points_.clear ();
+  places_.clear ();
+  plain_.clear ();
   at_faces_.clear ();
-  place_at_faces_.clear ();
+  enriched_.clear ();
+  enriched_at_.clear ();
 }
 
 void
 BlockField::addPoint (const Eigen::Vector3d &x)
 {
+  const Eigen::Vector3f scaled = ((x - center_) * inverse_unit_).cast<float> ();
+  if (!enrichment_.isAbsentAt (x, reachAt (x)))
+  {
+    places_.push_back ({true, static_cast<std::uint32_t> (enriched_.size ()), -1});
+    enriched_.add (scaled);
+    enriched_at_.push_back (x);
+    return;
+  }
   const bool is_at_faces = has_separations_ && faces_.hasSeparationAt (x);
-  place_at_faces_.push_back (is_at_faces ? static_cast<int> (at_faces_.size ()) : -1);
+  const auto index = static_cast<std::uint32_t> (plain_.size ());
+  places_.push_back ({false, index, is_at_faces ? static_cast<int> (at_faces_.size ()) : -1});
   if (is_at_faces)
-    at_faces_.push_back (static_cast<std::uint32_t> (points_.size ()));
-  points_.add (((x - center_) * inverse_unit_).cast<float> ());
+    at_faces_.push_back (index);
+  plain_.add (scaled);
 }
 
 /** \brief What is known of ε at the points. */
 void
-BlockField::setRadii ()
+BlockField::setRadii (BlockPoints &points) const
 {
   const SupportSize &size = field_.supportSize ();
   const auto radius = static_cast<float> (center_radius_ * inverse_unit_);
-  for (std::size_t i = 0; i < points_.size (); ++i)
+  for (std::size_t i = 0; i < points.size (); ++i)
   {
-    const Eigen::Vector3f x = points_.position (i);
+    const Eigen::Vector3f x = points.position (i);
     float bound = radius;
     if (size.kind () == SupportSize::Kind::NEAREST)
       bound = (radius + x.norm ()) * static_cast<float> (1.0 + ROUNDING); // ε is 1-Lipschitz
@@ -229,39 +230,65 @@ BlockField::setRadii ()
     {
       const Eigen::Vector3d position = center_ + unit_ * x.cast<double> ();
       bound = static_cast<float> (size.radiusAt (position) * inverse_unit_);
-      points_.setGrowth (i, size.radiusGradientAt (position).cast<float> ());
+      points.setGrowth (i, size.radiusGradientAt (position).cast<float> ());
     }
-    points_.setRadius (i, bound, radius);
+    points.setRadius (i, bound, radius);
   }
 }
 
 void
 BlockField::evaluate (bool gradients)
 {
-  if (points_.size () == 0)
-    return;
   settings_.gradients = gradients;
-  if (gradients)
+  if (gradients && size () > 0)
     nodes_.copyAttributes ();
-  setRadii ();
+  if (plain_.size () > 0)
+    evaluatePlain ();
+  if (enriched_.size () > 0)
+    evaluateEnriched ();
+  evaluations_ += size ();
+}
+
+void
+BlockField::evaluatePlain ()
+{
+  setRadii (plain_);
   const bool is_function = field_.supportSize ().kind () == SupportSize::Kind::FUNCTION;
-  points_.run (engine_, settings_, nodes_.view (gradients), is_function);
-  evaluations_ += points_.size ();
-  for (std::size_t i = 0; i < points_.size (); ++i)
-    support_nodes_ += points_.supports[i];
+  plain_.run (engine_, settings_, nodes_.view (settings_.gradients), is_function);
+  for (std::size_t i = 0; i < plain_.size (); ++i)
+    support_nodes_ += plain_.supports[i];
   if (is_function)
     refuseUncovered ();
   if (!at_faces_.empty ())
-    faces_.combine (settings_, center_radius_, at_faces_, points_);
+    faces_.combine (settings_, center_radius_, at_faces_, plain_);
+}
+
+void
+BlockField::evaluateEnriched ()
+{
+  setRadii (enriched_);
+  double reach = 0.0;
+  for (const Eigen::Vector3d &x : enriched_at_)
+    reach = std::max (reach, reachAt (x));
+  enrichment_.run (engine_, settings_, nodes_, enriched_at_, reach, enriched_);
+  for (std::size_t i = 0; i < enriched_.size (); ++i)
+  {
+    support_nodes_ += enriched_.supports[i];
+    const auto nearest = static_cast<double> (enriched_.nearest_distances[i]);
+    if (nearest > static_cast<double> (settings_.near_enough) &&
+        FaceVote::isBeyondBorder (nearest - static_cast<double> (settings_.offset),
+                                  static_cast<double> (enriched_.radii[i]), static_cast<double> (enriched_.asides[i])))
+      enriched_.in_reach[i] = 0;
+  }
 }
 
 /** \brief A radius that is a function may reach farther than was gathered for: see Support::covers (). */
 void
 BlockField::refuseUncovered ()
 {
-  for (std::size_t i = 0; i < points_.size (); ++i)
-    if (unit_ * static_cast<double> (points_.position (i).norm () + points_.bound (i)) > reach_ * (1.0 + ROUNDING))
-      points_.states[i] = lanes::State::UNSETTLED;
+  for (std::size_t i = 0; i < plain_.size (); ++i)
+    if (unit_ * static_cast<double> (plain_.position (i).norm () + plain_.bound (i)) > reach_ * (1.0 + ROUNDING))
+      plain_.states[i] = lanes::State::UNSETTLED;
 }
 
 int
@@ -269,15 +296,21 @@ BlockField::face (std::size_t point) const
 {
   if (field_.faces () == nullptr)
     return -1;
-  const int place = placeAtFaces (point);
+  const int place = places_[point].at_faces;
   const int face = place < 0 ? -1 : faces_.face (static_cast<std::size_t> (place));
-  return face >= 0 ? face : field_.faces ()->faceOf (nodes_.node (points_.nearest[point]));
+  return face >= 0 ? face : field_.faces ()->faceOf (nodes_.node (at (point).nearest[placeOf (point)]));
+}
+
+std::uint64_t
+BlockField::sideKey (std::size_t point) const
+{
+  return sideKeyOf (face (point), places_[point].is_enriched ? enrichment_.sideKey (enriched_, placeOf (point)) : 0);
 }
 
 double
 BlockField::thickening (std::size_t point) const
 {
-  const int place = placeAtFaces (point);
+  const int place = places_[point].at_faces;
   return place < 0 ? 0.0 : faces_.thickening (static_cast<std::size_t> (place));
 }
 

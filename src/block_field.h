@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include "block_enrichment.h"
 #include "block_faces.h"
 #include "block_nodes.h"
 #include "block_points.h"
@@ -9,13 +10,13 @@
 
 #include <cstddef>
 #include <cstdint>
-#include <utility>
 #include <vector>
 
 namespace erkpa
 {
 
-/** \brief The field at many points of one ball at once, where it has no enrichment: LocalField's quick double.
+/** \brief The field at many points of one ball at once: LocalField's quick double, for what BlockFaces and
+ * BlockEnrichment can do.
  *
  * Gathers the nodes around a ball, and hands them with the points to the vectors of the processor (lanes.h), in the
  * typical radius as unit. One object per thread.
@@ -46,9 +47,8 @@ public:
   bool
   gather (const Eigen::Vector3d &center, double extent);
 
-  /** \brief Whether a point of the ball that was gathered for can be evaluated here: no sharp surface that enriches the
-   * field is in its reach.
-   */
+  /** \brief Whether a point of the ball that was gathered for can be evaluated here: the sharp surfaces in its reach
+   * decide. */
   bool
   canEvaluateAt (const Eigen::Vector3d &x) const;
 
@@ -62,7 +62,7 @@ public:
   std::size_t
   size () const
   {
-    return points_.size ();
+    return places_.size ();
   }
 
   /** \brief Evaluate f at the points, and ∇f, border offsets and attributes where \a gradients are wanted. */
@@ -73,57 +73,63 @@ public:
   double
   value (std::size_t point) const
   {
-    return unit_ * static_cast<double> (points_.values[point]);
+    return unit_ * static_cast<double> (at (point).values[placeOf (point)]);
   }
 
   bool
   isInReach (std::size_t point) const
   {
-    return points_.in_reach[point] != 0;
+    return at (point).in_reach[placeOf (point)] != 0;
   }
 
   /** \brief Whether value and gradient are as LocalField's; false also where f is undefined. */
   bool
   isSettled (std::size_t point) const
   {
-    return points_.states[point] == lanes::State::DEFINED;
+    return at (point).states[placeOf (point)] == lanes::State::DEFINED;
   }
 
   bool
   isUnsettled (std::size_t point) const
   {
-    return points_.states[point] == lanes::State::UNSETTLED;
+    return at (point).states[placeOf (point)] == lanes::State::UNSETTLED;
   }
 
   Eigen::Vector3d
   gradient (std::size_t point) const
   {
-    return {static_cast<double> (points_.gradients[0][point]), static_cast<double> (points_.gradients[1][point]),
-            static_cast<double> (points_.gradients[2][point])};
+    const auto &gradients = at (point).gradients;
+    const std::size_t i = placeOf (point);
+    return {static_cast<double> (gradients[0][i]), static_cast<double> (gradients[1][i]),
+            static_cast<double> (gradients[2][i])};
   }
 
   /** \brief ε. */
   double
   radius (std::size_t point) const
   {
-    return unit_ * static_cast<double> (points_.radii[point]);
+    return unit_ * static_cast<double> (at (point).radii[placeOf (point)]);
   }
 
   double
   borderOffset (std::size_t point) const
   {
-    return static_cast<double> (points_.border_offsets[point]);
+    return static_cast<double> (at (point).border_offsets[placeOf (point)]);
   }
 
   float
   attribute (std::size_t point, std::size_t channel) const
   {
-    return points_.attribute (point, channel);
+    return at (point).attribute (placeOf (point), channel);
   }
 
   /** \brief See LocalField::face (); elsewhere that of the nearest node; -1 where the field has no faces. */
   int
   face (std::size_t point) const;
+
+  /** \brief See LocalField::sideKey (). */
+  std::uint64_t
+  sideKey (std::size_t point) const;
 
   /** \brief See LocalField::thickening (). */
   double
@@ -142,8 +148,13 @@ public:
   }
 
 private:
-  void
-  gatherSharpSurfaces ();
+  /** \brief Where a point is kept, and as which. */
+  struct Place
+  {
+    bool is_enriched;
+    std::uint32_t index;
+    int at_faces; ///< place among the points where faces are kept apart; -1 elsewhere
+  };
 
   bool
   findReach (const Eigen::Vector3d &center, double extent);
@@ -151,17 +162,32 @@ private:
   void
   findNodes (const Eigen::Vector3d &center, double reach);
 
+  /** \brief How far the support of a point goes, at most. */
+  double
+  reachAt (const Eigen::Vector3d &x) const;
+
   void
-  setRadii ();
+  setRadii (BlockPoints &points) const;
+
+  void
+  evaluatePlain ();
+
+  void
+  evaluateEnriched ();
 
   void
   refuseUncovered ();
 
-  /** \brief Place of a point among those where faces are kept apart; -1 elsewhere. */
-  int
-  placeAtFaces (std::size_t point) const
+  const BlockPoints &
+  at (std::size_t point) const
   {
-    return place_at_faces_[point];
+    return places_[point].is_enriched ? enriched_ : plain_;
+  }
+
+  std::size_t
+  placeOf (std::size_t point) const
+  {
+    return places_[point].index;
   }
 
   const ImplicitField &field_;
@@ -170,12 +196,13 @@ private:
   double unit_, inverse_unit_; // of the lanes' lengths
   lanes::Settings settings_;
   BlockNodes nodes_;
-  BlockPoints points_;
   BlockFaces faces_;
+  BlockEnrichment enrichment_;
+  std::vector<Place> places_; // of the points
+  BlockPoints plain_, enriched_;
   bool has_separations_ = false;
-  std::vector<std::uint32_t> at_faces_;                              // points
-  std::vector<int> place_at_faces_;                                  // of every point
-  std::vector<std::pair<const SharpSurface *, bool>> near_surfaces_; // and whether it is a plane
+  std::vector<std::uint32_t> at_faces_;      // of plain_
+  std::vector<Eigen::Vector3d> enriched_at_; // local frame
   Eigen::Vector3d center_ = Eigen::Vector3d::Zero ();
   double center_radius_ = 0.0; // ε there, at most
   double reach_ = 0.0;         // how far around it the nodes are gathered

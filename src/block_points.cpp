@@ -28,6 +28,7 @@ BlockPoints::resize (std::size_t size)
   states.resize (size);
   nearest.resize (size);
   supports.resize (size);
+  active.resize (size);
   attributes_.resize (size * channels_);
   coefficients_.resize (size * terms_);
 }
@@ -51,7 +52,8 @@ BlockPoints::pad ()
 }
 
 void
-BlockPoints::run (const lanes::Engine &engine, const lanes::Settings &settings, const lanes::Nodes &nodes, bool growths)
+BlockPoints::run (const lanes::Engine &engine, const lanes::Settings &settings, const lanes::Nodes &nodes, bool growths,
+                  const lanes::SharpSurfaces *sharp)
 {
   pad ();
   list_.resize (std::max (list_.size (), nodes.count + 1));
@@ -75,6 +77,7 @@ BlockPoints::run (const lanes::Engine &engine, const lanes::Settings &settings, 
   samples.aside = asides.data ();
   samples.coefficients = terms_ > 0 ? coefficients_.data () : nullptr;
   samples.support = supports.data ();
+  samples.active = active.data ();
   for (std::size_t a = 0; a < 3; ++a)
   {
     samples.gradient[a] = gradients[a].data ();
@@ -82,7 +85,8 @@ BlockPoints::run (const lanes::Engine &engine, const lanes::Settings &settings, 
   }
   samples.border_offset = border_offsets.data ();
   samples.attributes = attributes_.data ();
-  engine.evaluate (settings, nodes, points, {list_.data (), rows_.data ()}, samples);
+  engine.evaluate (settings, nodes, points, sharp != nullptr ? *sharp : lanes::SharpSurfaces{},
+                   {list_.data (), rows_.data ()}, samples);
 }
 
 } // namespace erkpa

@@ -66,15 +66,17 @@ public:
 
   /** \brief Evaluate at all points.
    * \param[in] growths whether setGrowth () was called
+   * \param[in] sharp null: none
    */
   void
-  run (const lanes::Engine &engine, const lanes::Settings &settings, const lanes::Nodes &nodes, bool growths);
+  run (const lanes::Engine &engine, const lanes::Settings &settings, const lanes::Nodes &nodes, bool growths,
+       const lanes::SharpSurfaces *sharp = nullptr);
 
   // What was found; see lanes::Samples. Points of faces have theirs written here afterwards.
   std::vector<float> values, radii, border_offsets, nearest_distances, asides;
   std::vector<std::uint8_t> in_reach;
   std::vector<lanes::State> states;
-  std::vector<std::uint32_t> nearest, supports;
+  std::vector<std::uint32_t> nearest, supports, active;
   std::array<std::vector<float>, 3> gradients, radius_gradients;
 
   float

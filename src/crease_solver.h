@@ -15,10 +15,11 @@ namespace erkpa
  * \param[in] reach how far the point may move, a length
  * \param[in] tolerance steps shorter than this end it, a length
  * \param[in,out] x the point; anywhere within reach where it fails
+ * \param[out] gradients of the pieces there, all but for the last short step; null: not wanted
  * \return false where there is no such place within reach
  */
 bool
 moveToCrease (LocalField &local, const std::vector<Side> &sides, double iso, double reach, double tolerance,
-              Eigen::Vector3d &x);
+              Eigen::Vector3d &x, std::vector<Eigen::Vector3d> *gradients = nullptr);
 
 } // namespace erkpa

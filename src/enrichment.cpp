@@ -371,10 +371,7 @@ Enrichment::sideKey () const
   std::uint64_t key = 0;
   for (std::size_t i = 0; i < near_count_; ++i)
     if (near_[i].active)
-    {
-      const auto side = static_cast<std::uint64_t> (2 * near_[i].surface + (near_[i].at_point.value < 0.0 ? 1 : 2));
-      key = (key ^ side) * 0x100000001b3ULL + 1; // FNV-1a
-    }
+      key = extendSideKey (key, near_[i].surface, near_[i].at_point.value < 0.0);
   return key;
 }
 

@@ -59,6 +59,14 @@ public:
   std::uint64_t
   sideKey () const;
 
+  /** \brief How the key grows by an active surface; in the order of the field's surfaces. */
+  static std::uint64_t
+  extendSideKey (std::uint64_t key, int surface, bool is_below)
+  {
+    const auto side = static_cast<std::uint64_t> (2 * surface + (is_below ? 1 : 2));
+    return (key ^ side) * 0x100000001b3ULL + 1; // FNV-1a
+  }
+
   /** \brief The active surface nearest to the evaluation point, and |θ| there; -1 where none is active. */
   int
   nearestSurface (double &distance) const;
@@ -197,5 +205,12 @@ private:
   Eigen::Vector3d position_ = Eigen::Vector3d::Zero (); // selected for, in the input's frame
   double total_weight_ = 0.0;                           // of the support's nodes
 };
+
+/** \brief A number that differs between the sides of creases: of a face, and of what Enrichment::sideKey () says. */
+inline std::uint64_t
+sideKeyOf (int face, std::uint64_t enrichment = 0)
+{
+  return static_cast<std::uint64_t> (face + 1) << 40 ^ enrichment;
+}
 
 } // namespace erkpa

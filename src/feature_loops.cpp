@@ -114,7 +114,7 @@ private:
     std::vector<Side> sides;
     for (const int v : sides_)
       sides.push_back (sideOf (v));
-    return moveToCrease (local_, sides, options_.iso_level, REACH * voxel_, TOLERANCE * voxel_, x) &&
+    return moveToCrease (local_, sides, options_.iso_level, REACH * voxel_, TOLERANCE * voxel_, x, &gradients_) &&
            (x - middle).norm () < REACH * voxel_;
   }
 
@@ -124,10 +124,7 @@ private:
   moveInside (const CellLoop &loop, const Eigen::Vector3d &middle, MeshedLoop &result)
   {
     constexpr double MARGIN = 0.02, STEEP = 0.1; // voxels; sine between crease and side of the loop
-    const Eigen::Vector3d along =
-        local_.sampleOnSide (result.position, sideOf (sides_.front ()))
-            .gradient.cross (local_.sampleOnSide (result.position, sideOf (sides_.back ())).gradient)
-            .normalized ();
+    const Eigen::Vector3d along = gradients_.front ().cross (gradients_.back ()).normalized ();
     double low = -REACH * voxel_, high = -low;
     const std::size_t n = loop.ring.size ();
     for (std::size_t i = 0; i < n; ++i)
@@ -147,8 +144,11 @@ private:
     if (low <= 0.0 && high >= 0.0)
       return;
     Eigen::Vector3d moved = result.position + (low > high ? 0.5 * (low + high) : low > 0.0 ? low : high) * along;
+    const std::vector<Eigen::Vector3d> gradients = gradients_;
     if (solve (middle, moved))
       result.position = moved;
+    else
+      gradients_ = gradients;
   }
 
   const Eigen::Vector3d &
@@ -161,6 +161,9 @@ private:
   bool
   isCrease (int a, int b)
   {
+    constexpr double SMOOTH = 0.5; // of that turn: where the normals of the vertices say so already
+    if (turnBetween (normalOf (a), normalOf (b)) < SMOOTH * LEAST_TURN)
+      return false;
     const Eigen::Vector3d middle = 0.5 * (position (a) + position (b));
     const LocalSample one = local_.sampleOnSide (middle, sideOf (a)), other = local_.sampleOnSide (middle, sideOf (b));
     return one.isDefined () && other.isDefined () && turnBetween (one.gradient, other.gradient) > LEAST_TURN;
@@ -204,13 +207,11 @@ private:
     if (channels_ > 0)
       local_.blendAttributes (result.attributes.data ());
     std::vector<Eigen::Vector3d> normals; // of the faces: several sides of sharp surfaces can be of one
-    for (const int v : sides_)
+    for (const Eigen::Vector3d &gradient : gradients_)
     {
-      const LocalSample piece = local_.sampleOnSide (result.position, sideOf (v));
-      const auto is_known = [&] (const Eigen::Vector3d &n) { return turnBetween (n, piece.gradient) < LEAST_TURN; };
-      if (piece.isDefined () && piece.gradient.norm () > 0.0 &&
-          std::none_of (normals.begin (), normals.end (), is_known))
-        normals.push_back (piece.gradient.normalized ());
+      const auto is_known = [&] (const Eigen::Vector3d &n) { return turnBetween (n, gradient) < LEAST_TURN; };
+      if (gradient.norm () > 0.0 && std::none_of (normals.begin (), normals.end (), is_known))
+        normals.push_back (gradient.normalized ());
     }
     result.normal.setZero ();
     for (const Eigen::Vector3d &normal : normals)
@@ -224,7 +225,8 @@ private:
   const SurfaceVertices &vertices_;
   LocalField local_;
   std::size_t channels_;
-  std::vector<int> sides_; // a vertex on each
+  std::vector<int> sides_;                 // a vertex on each
+  std::vector<Eigen::Vector3d> gradients_; // of the pieces of f on these sides where the crease was last found
 };
 
 } // namespace

@@ -32,13 +32,6 @@ struct Side
   Eigen::Vector3d place = Eigen::Vector3d::Zero (); ///< local frame
 };
 
-/** \brief A number that differs between the sides of creases: of a face, and of what Enrichment::sideKey () says. */
-inline std::uint64_t
-sideKeyOf (int face, std::uint64_t enrichment = 0)
-{
-  return static_cast<std::uint64_t> (face + 1) << 40 ^ enrichment;
-}
-
 /** \brief The field seen from one ball: gathers the nodes once, then evaluates f at any of the ball's points.
  *
  * Works in the local frame of OrientedPoints; a warped field is evaluated where the warp comes from. One object per

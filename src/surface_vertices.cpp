@@ -205,7 +205,7 @@ private:
     vertices_.normals[vertex] = field.gradient (point).stableNormalized ();
     vertices_.border_offsets[vertex] = field.borderOffset (point);
     vertices_.faces[vertex] = field.face (point);
-    vertices_.side_keys[vertex] = sideKeyOf (vertices_.faces[vertex]);
+    vertices_.side_keys[vertex] = field.sideKey (point);
     const auto channels = static_cast<std::size_t> (channels_);
     for (std::size_t c = 0; c < channels; ++c)
       vertices_.attributes[vertex * channels + c] = field.attribute (point, c);

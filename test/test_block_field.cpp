@@ -222,4 +222,59 @@ TEST_F (BlockFieldTest, AgreesWithTheDefinitionWhereFacesMeet)
   }
 }
 
+/** \brief Across sharp surfaces the field has kinks and their squares, which fade where few nodes lie beyond. */
+TEST_F (BlockFieldTest, AgreesWithTheDefinitionWhereSharpSurfacesPass)
+{
+  const Vector3d half (0.5, 0.35, 0.25);
+  for (const Order order : {Order::LINEAR, Order::SPHERICAL})
+  {
+    FieldOptions options = optionsOf (order, 20);
+    for (const Eigen::Vector4d &plane : shapes::boxBisectors (half))
+      options.sharp_surfaces.push_back (shapes::plane (plane));
+    erkpa::SharpSurface::ConstPtr ball; // curved: its kink looks one way only
+    ASSERT_TRUE (erkpa::makeSharpSurface (erkpa::SurfaceModel::SPHERE, {0.5f, 0.0f, 0.0f, 0.2f}, ball).ok ());
+    options.sharp_surfaces.push_back (ball);
+    const auto field = shapes::field (shapes::box (6000, half), options);
+    const double spacing = field->spacing ();
+    std::vector<Vector3d> middles = shapes::boxEdgePoints (half, 5);
+    for (int i = 0; i < 12; ++i)
+      middles.emplace_back (0.5, 0.2 * std::sin (0.5 * i), 0.2 * std::cos (0.5 * i));
+    std::size_t engines = 0;
+    const erkpa::lanes::Engine *const *engine = erkpa::lanes::engines (engines);
+    for (std::size_t e = 0; e < engines; ++e)
+    {
+      BlockField block (*field, *engine[e]);
+      LocalField local (*field);
+      int compared = 0, settled = 0, keys = 0;
+      for (const Vector3d &middle : middles)
+      {
+        ASSERT_TRUE (block.gather (middle, spacing));
+        std::vector<Vector3d> points;
+        for (int i = 0; i < 21; ++i)
+          points.push_back (middle + spacing * randomPoint (0.57));
+        for (const Vector3d &x : points)
+        {
+          ASSERT_TRUE (block.canEvaluateAt (x));
+          block.addPoint (x);
+        }
+        block.evaluate (true);
+        for (std::size_t i = 0; i < points.size (); ++i)
+        {
+          local.gather (points[i], 0.0);
+          const LocalSample sample = local.sample (points[i]);
+          ++compared;
+          if (!block.isSettled (i))
+            continue;
+          ++settled;
+          keys += local.sideKey () == block.sideKey (i) ? 1 : 0;
+          EXPECT_NEAR (sample.value, block.value (i), 1e-4 * spacing) << engine[e]->name;
+          EXPECT_LT ((sample.gradient - block.gradient (i)).norm (), 2e-3) << engine[e]->name;
+        }
+      }
+      EXPECT_GT (settled, compared / 2) << engine[e]->name << ": all but the corners";
+      EXPECT_GT (keys, settled - settled / 100) << "a node on the very rim of a support may count or not";
+    }
+  }
+}
+
 } // namespace

@@ -1,12 +1,16 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include "lane_enriched_fit.h"
 #include "lane_fit.h"
 
 namespace erkpa::lanes
 {
 
-template <typename B, Basis BASIS, Constraint CONSTRAINT, template <typename> class KernelT>
+/** \brief Evaluates point after point, so many at once as there are lanes.
+ * \tparam FitT LaneFit or LaneEnrichedFit
+ */
+template <typename B, typename FitT>
 class LaneEngine
 {
 public:
@@ -16,15 +20,17 @@ public:
   {
   }
 
+  /** \param[in] make_fit (support, first point) makes the fit */
+  template <typename MakeFitT>
   void
-  evaluate () const
+  evaluate (MakeFitT make_fit) const
   {
     for (std::size_t first = 0; first < points_.count; first += B::size)
     {
       const LaneSupport<B> support (settings_, nodes_, points_, first, scratch_);
-      Fit fit (settings_, nodes_, support);
+      FitT fit = make_fit (support, first);
       const B nan (__builtin_nanf (""));
-      B value = xsimd::select (fit.isDefined (), fit.value (), nan);
+      const B value = xsimd::select (fit.isDefined (), fit.value (), nan);
       support.radius ().store_unaligned (samples_.radius + first);
       value.store_unaligned (samples_.value + first);
       const B one (1.0f), zero (0.0f);
@@ -33,27 +39,28 @@ public:
       storeFit (fit, first);
       if (settings_.gradients)
         storeGradients (support, fit, first, state);
+      else if constexpr (FitT::IS_ENRICHED)
+        state = xsimd::select (fit.isAtCorner () && state < B (0.5f), B (2.0f), state);
       storeBytes (near, state, fit, first);
     }
   }
 
 private:
-  using Fit = LaneFit<B, BASIS, CONSTRAINT, KernelT>;
-
   void
-  storeFit (const Fit &fit, std::size_t first) const
+  storeFit (const FitT &fit, std::size_t first) const
   {
     if (samples_.nearest_distance != nullptr)
       fit.nearestDistance ().store_unaligned (samples_.nearest_distance + first);
     if (samples_.aside != nullptr)
       fit.aside ().store_unaligned (samples_.aside + first);
-    for (int j = 0; j < (samples_.coefficients != nullptr ? Fit::SIZE : 0); ++j)
-      fit.coefficient (j).store_unaligned (samples_.coefficients + static_cast<std::size_t> (j) * points_.stride +
-                                           first);
+    if constexpr (!FitT::IS_ENRICHED)
+      for (int j = 0; j < (samples_.coefficients != nullptr ? FitT::SIZE : 0); ++j)
+        fit.coefficient (j).store_unaligned (samples_.coefficients + static_cast<std::size_t> (j) * points_.stride +
+                                             first);
   }
 
   void
-  storeGradients (const LaneSupport<B> &support, Fit &fit, std::size_t first, B &state) const
+  storeGradients (const LaneSupport<B> &support, FitT &fit, std::size_t first, B &state) const
   {
     B growth[3] = {B (0.0f), B (0.0f), B (0.0f)}, gradient[3];
     if (points_.growth[0] != nullptr)
@@ -74,7 +81,7 @@ private:
   }
 
   void
-  storeBytes (B near, B state, const Fit &fit, std::size_t first) const
+  storeBytes (B near, B state, const FitT &fit, std::size_t first) const
   {
     float nears[B::size], states[B::size], nearest[B::size], support[B::size];
     near.store_unaligned (nears);
@@ -89,6 +96,22 @@ private:
       if (samples_.nearest != nullptr)
         samples_.nearest[first + i] = static_cast<std::uint32_t> (nearest[i]);
     }
+    if constexpr (FitT::IS_ENRICHED)
+      storeActive (fit, first);
+  }
+
+  void
+  storeActive (const FitT &fit, std::size_t first) const
+  {
+    for (std::size_t i = 0; i < B::size; ++i)
+      samples_.active[first + i] = 0;
+    for (int s = 0; s < fit.surfaces (); ++s)
+    {
+      float active[B::size];
+      fit.isActive (s).store_unaligned (active);
+      for (std::size_t i = 0; i < B::size; ++i)
+        samples_.active[first + i] |= active[i] > 0.5f ? 1u << s : 0u;
+    }
   }
 
   const Settings &settings_;
@@ -97,6 +120,27 @@ private:
   const Scratch &scratch_;
   const Samples &samples_;
 };
+
+template <typename B, Basis BASIS, Constraint CONSTRAINT, template <typename> class KernelT>
+void
+evaluateWith (const Settings &settings, const Nodes &nodes, const Points &points, const Scratch &scratch,
+              const Samples &samples)
+{
+  using Fit = LaneFit<B, BASIS, CONSTRAINT, KernelT>;
+  LaneEngine<B, Fit> (settings, nodes, points, scratch, samples)
+      .evaluate ([&] (const LaneSupport<B> &support, std::size_t) { return Fit (settings, nodes, support); });
+}
+
+template <typename B, Basis BASIS>
+void
+evaluateEnriched (const Settings &settings, const Nodes &nodes, const Points &points, const SharpSurfaces &sharp,
+                  const Scratch &scratch, const Samples &samples)
+{
+  using Fit = LaneEnrichedFit<B, BASIS, AnyKernel>;
+  LaneEngine<B, Fit> (settings, nodes, points, scratch, samples)
+      .evaluate ([&] (const LaneSupport<B> &support, std::size_t first)
+                 { return Fit (settings, nodes, sharp, first, support); });
+}
 
 template <typename B, Basis BASIS, Constraint CONSTRAINT>
 void
@@ -107,10 +151,10 @@ evaluateWith (const Settings &settings, const Nodes &nodes, const Points &points
   if constexpr (IS_COMMON)
     if (settings.kernel == Kernel::PAPER)
     {
-      LaneEngine<B, BASIS, CONSTRAINT, PaperKernel> (settings, nodes, points, scratch, samples).evaluate ();
+      evaluateWith<B, BASIS, CONSTRAINT, PaperKernel> (settings, nodes, points, scratch, samples);
       return;
     }
-  LaneEngine<B, BASIS, CONSTRAINT, AnyKernel> (settings, nodes, points, scratch, samples).evaluate ();
+  evaluateWith<B, BASIS, CONSTRAINT, AnyKernel> (settings, nodes, points, scratch, samples);
 }
 
 template <typename B, Basis BASIS>
@@ -135,10 +179,18 @@ evaluateWith (const Settings &settings, const Nodes &nodes, const Points &points
 /** \brief What an Engine does, in vectors of one instruction set. */
 template <typename ArchT>
 void
-evaluate (const Settings &settings, const Nodes &nodes, const Points &points, const Scratch &scratch,
-          const Samples &samples)
+evaluate (const Settings &settings, const Nodes &nodes, const Points &points, const SharpSurfaces &sharp,
+          const Scratch &scratch, const Samples &samples)
 {
   using B = xsimd::batch<float, ArchT>;
+  if (sharp.count > 0)
+  {
+    if (settings.basis == Basis::LINEAR)
+      evaluateEnriched<B, Basis::LINEAR> (settings, nodes, points, sharp, scratch, samples);
+    else
+      evaluateEnriched<B, Basis::SPHERICAL> (settings, nodes, points, sharp, scratch, samples);
+    return;
+  }
   switch (settings.basis)
   {
     case Basis::CONSTANT: // has no gradient to fit: FieldFit takes the functional value for the Hermite constraint

@@ -18,6 +18,7 @@ class LaneFit
 public:
   using Mask = decltype (B () < B ());
   static constexpr int SIZE = Terms<B, BASIS>::SIZE;
+  static constexpr bool IS_ENRICHED = false;
 
   LaneFit (const Settings &settings, const Nodes &nodes, const LaneSupport<B> &support)
       : settings_ (settings), nodes_ (nodes), support_ (support), kernel_ (settings.kernel), scale_ (support.inverse ())

@@ -6,14 +6,14 @@ namespace erkpa::lanes
 
 // Each in a unit of its own, the only one compiled for that instruction set.
 void
-evaluateBaseline (const Settings &settings, const Nodes &nodes, const Points &points, const Scratch &scratch,
-                  const Samples &samples);
+evaluateBaseline (const Settings &settings, const Nodes &nodes, const Points &points, const SharpSurfaces &sharp,
+                  const Scratch &scratch, const Samples &samples);
 void
-evaluateAvx2 (const Settings &settings, const Nodes &nodes, const Points &points, const Scratch &scratch,
-              const Samples &samples);
+evaluateAvx2 (const Settings &settings, const Nodes &nodes, const Points &points, const SharpSurfaces &sharp,
+              const Scratch &scratch, const Samples &samples);
 void
-evaluateAvx512 (const Settings &settings, const Nodes &nodes, const Points &points, const Scratch &scratch,
-                const Samples &samples);
+evaluateAvx512 (const Settings &settings, const Nodes &nodes, const Points &points, const SharpSurfaces &sharp,
+                const Scratch &scratch, const Samples &samples);
 
 namespace
 {

@@ -7,7 +7,7 @@
 /** \brief The fit of FieldFit at many evaluation points at once, one in each lane of the processor's vectors.
  *
  * LocalField is the definition, in double precision and for one point; this is the same in float for points that share
- * a gathered neighbourhood and have no enrichment. What is here sees neither Eigen nor PCL, only arrays of
+ * a gathered neighbourhood. What is here sees neither Eigen nor PCL, only arrays of
  * floats: the sources behind it are compiled once for each instruction set, and memory of a class that aligns to the
  * instruction set must not pass between such units.
  *
@@ -83,11 +83,34 @@ struct Points
   std::size_t stride;     ///< from a point's attribute or coefficient to its next one
 };
 
+/** \brief At most so many sharp surfaces enrich the points of one call. */
+constexpr std::size_t MAX_SURFACES = 4;
+
+/** \brief A sharp surface that is in force everywhere, and θ and ∇θ of it. */
+struct Surface
+{
+  const float *theta, *gradient[3];       ///< at the value points
+  const float *theta_at, *gradient_at[3]; ///< at the evaluation points
+  bool reversible;                        ///< its kink may be seen from either side
+  bool squared;                           ///< its kink comes with θ²
+};
+
+/** \brief Those that pass near the points; for the Hermite constraint only. */
+struct SharpSurfaces
+{
+  static constexpr std::size_t MAX_PENCILS = 4;
+
+  std::size_t count; ///< 0: none, and no enrichment
+  Surface surfaces[MAX_SURFACES];
+  std::size_t pencil_count;
+  int pencils[MAX_PENCILS][3]; ///< those that meet in a corner: points where all three count are left unsettled
+};
+
 enum class State : std::uint8_t
 {
   DEFINED,
   UNDEFINED, ///< too few nodes: value and gradient are NaN
-  UNSETTLED  ///< the gradient needs terms or digits that are not there: ask LocalField
+  UNSETTLED  ///< it takes terms or digits that are not there: ask LocalField
 };
 
 /** \brief What is found, one per point. Gradients and what follows may be null where they are not asked for. */
@@ -101,6 +124,7 @@ struct Samples
   float *aside;            ///< |centroid of the weighted nodes - x|, in ε
   float *coefficients;     ///< of the terms in u = (y - x) / ε, times ε: term after term
   std::uint32_t *support;  ///< number of nodes in the support
+  std::uint32_t *active;   ///< the sharp surfaces that count there, as bits
   float *gradient[3];
   float *radius_gradient[3]; ///< ∇ε; null: not wanted
   float *border_offset;
@@ -119,8 +143,8 @@ struct Engine
 {
   const char *name;
   std::size_t width; ///< points per vector
-  void (*evaluate) (const Settings &settings, const Nodes &nodes, const Points &points, const Scratch &scratch,
-                    const Samples &samples);
+  void (*evaluate) (const Settings &settings, const Nodes &nodes, const Points &points, const SharpSurfaces &sharp,
+                    const Scratch &scratch, const Samples &samples);
 };
 
 /** \brief The engines this processor can run, the widest last; never empty. */

@@ -5,10 +5,10 @@ namespace erkpa::lanes
 {
 
 void
-evaluateAvx2 (const Settings &settings, const Nodes &nodes, const Points &points, const Scratch &scratch,
-              const Samples &samples)
+evaluateAvx2 (const Settings &settings, const Nodes &nodes, const Points &points, const SharpSurfaces &sharp,
+              const Scratch &scratch, const Samples &samples)
 {
-  evaluate<xsimd::fma3<xsimd::avx2>> (settings, nodes, points, scratch, samples);
+  evaluate<xsimd::fma3<xsimd::avx2>> (settings, nodes, points, sharp, scratch, samples);
 }
 
 } // namespace erkpa::lanes

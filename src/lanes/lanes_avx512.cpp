@@ -5,10 +5,10 @@ namespace erkpa::lanes
 {
 
 void
-evaluateAvx512 (const Settings &settings, const Nodes &nodes, const Points &points, const Scratch &scratch,
-                const Samples &samples)
+evaluateAvx512 (const Settings &settings, const Nodes &nodes, const Points &points, const SharpSurfaces &sharp,
+                const Scratch &scratch, const Samples &samples)
 {
-  evaluate<xsimd::avx512f> (settings, nodes, points, scratch, samples);
+  evaluate<xsimd::avx512f> (settings, nodes, points, sharp, scratch, samples);
 }
 
 } // namespace erkpa::lanes

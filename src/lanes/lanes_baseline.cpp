@@ -5,10 +5,10 @@ namespace erkpa::lanes
 {
 
 void
-evaluateBaseline (const Settings &settings, const Nodes &nodes, const Points &points, const Scratch &scratch,
-                  const Samples &samples)
+evaluateBaseline (const Settings &settings, const Nodes &nodes, const Points &points, const SharpSurfaces &sharp,
+                  const Scratch &scratch, const Samples &samples)
 {
-  evaluate<xsimd::default_arch> (settings, nodes, points, scratch, samples);
+  evaluate<xsimd::default_arch> (settings, nodes, points, sharp, scratch, samples);
 }
 
 } // namespace erkpa::lanes

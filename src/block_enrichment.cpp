@@ -1,0 +1,194 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "block_enrichment.h"
+
+#include "enrichment.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace erkpa
+{
+
+namespace
+{
+
+/** \brief Whether a surface is in force everywhere and cheap to ask. */
+bool
+isPlainModel (const SharpSurface &surface)
+{
+  const SharpSurfaceParts parts = surface.parts ();
+  using Kind = SharpSurfaceParts::Kind;
+  return parts.kind == Kind::MODEL ||
+         (parts.plane != nullptr && (parts.kind == Kind::BETWEEN || parts.kind == Kind::REVERSED));
+}
+
+} // namespace
+
+BlockEnrichment::BlockEnrichment (const ImplicitField &field, double unit)
+    : field_ (field), inverse_unit_ (1.0 / unit),
+      can_evaluate_ (field.options ().constraint == Constraint::HERMITE &&
+                     field.options ().enrichment == EnrichmentType::KINK &&
+                     (field.options ().order == Order::LINEAR || field.options ().order == Order::SPHERICAL))
+{
+  for (const SharpSurface::ConstPtr &surface : field.enrichingSurfaces ())
+  {
+    const SpaceWarp *warp = nullptr;
+    is_plane_.push_back (planeBehind (*surface, &warp) != nullptr && warp == nullptr ? 1 : 0);
+    is_handled_.push_back (can_evaluate_ && isPlainModel (*surface) ? 1 : 0);
+  }
+}
+
+void
+BlockEnrichment::gather (const Eigen::Vector3d &center, double reach)
+{
+  near_.clear ();
+  const Eigen::Vector3d position = center + field_.points ().origin;
+  for (std::size_t i = 0; i < field_.enrichingSurfaces ().size (); ++i)
+  {
+    const int index = static_cast<int> (i);
+    if (surface (index).isAbsentIn (position, reach))
+      continue;
+    const Near near{index, is_plane_[i] != 0, is_handled_[i] != 0};
+    if (isInReach (near, center, reach))
+      near_.push_back (near);
+  }
+}
+
+bool
+BlockEnrichment::isInReach (const Near &near, const Eigen::Vector3d &x, double reach) const
+{
+  return !near.is_plane || std::abs (surface (near.surface).theta (x + field_.points ().origin)) <= reach;
+}
+
+bool
+BlockEnrichment::isAbsentAt (const Eigen::Vector3d &x, double reach) const
+{
+  return std::none_of (near_.begin (), near_.end (), [&] (const Near &near) { return isInReach (near, x, reach); });
+}
+
+bool
+BlockEnrichment::canEvaluateAt (const Eigen::Vector3d &x, double reach) const
+{
+  return std::all_of (near_.begin (), near_.end (),
+                      [&] (const Near &near) { return near.is_handled || !isInReach (near, x, reach); });
+}
+
+void
+BlockEnrichment::run (const lanes::Engine &engine, const lanes::Settings &settings, const BlockNodes &nodes,
+                      const std::vector<Eigen::Vector3d> &places, double reach, BlockPoints &points)
+{
+  used_ = 0;
+  std::size_t wanted = 0;
+  for (const Near &near : near_)
+  {
+    if (!near.is_handled || std::none_of (places.begin (), places.end (),
+                                          [&] (const Eigen::Vector3d &x) { return isInReach (near, x, reach); }))
+      continue;
+    if (++wanted > values_.size ())
+      break;
+    Values &values = values_[used_++];
+    values.surface = near.surface;
+    evaluateAtNodes (nodes, values);
+    evaluateAtPoints (places, values);
+  }
+  const lanes::SharpSurfaces sharp = view ();
+  points.run (engine, settings, nodes.view (settings.gradients), false, &sharp);
+  if (wanted > values_.size ())
+    std::fill_n (points.states.begin (), points.size (), lanes::State::UNSETTLED);
+}
+
+void
+BlockEnrichment::evaluateAtNodes (const BlockNodes &nodes, Values &values) const
+{
+  values.theta.resize (nodes.count ());
+  for (std::vector<float> &component : values.gradient)
+    component.resize (nodes.count ());
+  const SharpSurface &sharp = surface (values.surface);
+  for (std::size_t i = 0; i < nodes.count (); ++i)
+  {
+    const Eigen::Vector3d position =
+        field_.points ().positions[static_cast<std::size_t> (nodes.node (i))].cast<double> () + field_.points ().origin;
+    double theta = 0.0;
+    Eigen::Vector3d gradient;
+    sharp.evaluate (position, theta, gradient);
+    values.theta[i] = static_cast<float> (theta * inverse_unit_);
+    for (std::size_t a = 0; a < 3; ++a)
+      values.gradient[a][i] = static_cast<float> (gradient[static_cast<Eigen::Index> (a)]);
+  }
+}
+
+/** \brief The last vector is filled up with the last point. */
+void
+BlockEnrichment::evaluateAtPoints (const std::vector<Eigen::Vector3d> &places, Values &values) const
+{
+  const std::size_t padded = places.size () + lanes::MAX_WIDTH;
+  values.theta_at.resize (padded);
+  for (std::vector<float> &component : values.gradient_at)
+    component.resize (padded);
+  const SharpSurface &sharp = surface (values.surface);
+  double theta = 0.0;
+  Eigen::Vector3d gradient = Eigen::Vector3d::Zero ();
+  for (std::size_t i = 0; i < padded; ++i)
+  {
+    if (i < places.size ())
+      sharp.evaluate (places[i] + field_.points ().origin, theta, gradient);
+    values.theta_at[i] = static_cast<float> (theta * inverse_unit_);
+    for (std::size_t a = 0; a < 3; ++a)
+      values.gradient_at[a][i] = static_cast<float> (gradient[static_cast<Eigen::Index> (a)]);
+  }
+}
+
+lanes::SharpSurfaces
+BlockEnrichment::view () const
+{
+  lanes::SharpSurfaces sharp{};
+  sharp.count = used_;
+  for (std::size_t s = 0; s < used_; ++s)
+  {
+    const Values &values = values_[s];
+    lanes::Surface &seen = sharp.surfaces[s];
+    seen.theta = values.theta.data ();
+    seen.theta_at = values.theta_at.data ();
+    for (std::size_t a = 0; a < 3; ++a)
+    {
+      seen.gradient[a] = values.gradient[a].data ();
+      seen.gradient_at[a] = values.gradient_at[a].data ();
+    }
+    seen.reversible = is_plane_[static_cast<std::size_t> (values.surface)] != 0;
+    seen.squared = true;
+  }
+  listPencils (sharp);
+  return sharp;
+}
+
+void
+BlockEnrichment::listPencils (lanes::SharpSurfaces &sharp) const
+{
+  const auto place_of = [this] (int surface)
+  {
+    for (std::size_t s = 0; s < used_; ++s)
+      if (values_[s].surface == surface)
+        return static_cast<int> (s);
+    return -1;
+  };
+  for (const Pencil &pencil : field_.pencils ())
+  {
+    std::array<int, 3> places;
+    std::transform (pencil.surfaces.begin (), pencil.surfaces.end (), places.begin (), place_of);
+    if (used_ < 3 || *std::min_element (places.begin (), places.end ()) < 0)
+      continue;
+    std::copy (places.begin (), places.end (), sharp.pencils[sharp.pencil_count++]);
+  }
+}
+
+std::uint64_t
+BlockEnrichment::sideKey (const BlockPoints &points, std::size_t i) const
+{
+  std::uint64_t key = 0;
+  for (std::size_t s = 0; s < used_; ++s)
+    if ((points.active[i] >> s & 1u) != 0)
+      key = Enrichment::extendSideKey (key, values_[s].surface, values_[s].theta_at[i] < 0.0f);
+  return key;
+}
+
+} // namespace erkpa

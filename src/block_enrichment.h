@@ -1,0 +1,104 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "block_nodes.h"
+#include "block_points.h"
+
+#include <erkpa/implicit_field.h>
+
+#include <Eigen/Core>
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+namespace erkpa
+{
+
+/** \brief The sharp surfaces that enrich the field at points of one ball, as the lanes see them: Enrichment's quick
+ * double.
+ *
+ * Kinks at models that are in force everywhere, for the Hermite constraint. Corners, where three surfaces meet, are
+ * left to LocalField, and so is what is limited, warped or a function.
+ */
+class BlockEnrichment
+{
+public:
+  /** \param[in] unit of the lanes' lengths */
+  BlockEnrichment (const ImplicitField &field, double unit);
+
+  /** \brief Find the surfaces that may add terms at points whose supports lie within \a reach of \a center. */
+  void
+  gather (const Eigen::Vector3d &center, double reach);
+
+  /** \brief Whether none of them passes within \a reach of \a x (local frame): all nodes of its support lie on one side
+   * of each. */
+  bool
+  isAbsentAt (const Eigen::Vector3d &x, double reach) const;
+
+  /** \brief Whether those that may add terms at \a x are such as can be evaluated here. */
+  bool
+  canEvaluateAt (const Eigen::Vector3d &x, double reach) const;
+
+  /** \brief Evaluate at points that are near the surfaces.
+   * \param[in] places of the points, local frame
+   * \param[in] reach how far around each its support may go
+   * \param[in,out] points what is left unsettled wants LocalField
+   */
+  void
+  run (const lanes::Engine &engine, const lanes::Settings &settings, const BlockNodes &nodes,
+       const std::vector<Eigen::Vector3d> &places, double reach, BlockPoints &points);
+
+  /** \brief See Enrichment::sideKey (); for a point that was run. */
+  std::uint64_t
+  sideKey (const BlockPoints &points, std::size_t i) const;
+
+private:
+  /** \brief A surface near the ball. */
+  struct Near
+  {
+    int surface;
+    bool is_plane;   ///< |θ| is the distance
+    bool is_handled; ///< in force everywhere, and cheap to ask
+  };
+
+  /** \brief A surface near the points, and θ and ∇θ at nodes and points. */
+  struct Values
+  {
+    int surface;
+    std::vector<float> theta, theta_at;
+    std::array<std::vector<float>, 3> gradient, gradient_at;
+  };
+
+  const SharpSurface &
+  surface (int i) const
+  {
+    return *field_.enrichingSurfaces ()[static_cast<std::size_t> (i)];
+  }
+
+  bool
+  isInReach (const Near &near, const Eigen::Vector3d &x, double reach) const;
+
+  void
+  evaluateAtNodes (const BlockNodes &nodes, Values &values) const;
+
+  void
+  evaluateAtPoints (const std::vector<Eigen::Vector3d> &places, Values &values) const;
+
+  lanes::SharpSurfaces
+  view () const;
+
+  void
+  listPencils (lanes::SharpSurfaces &sharp) const;
+
+  const ImplicitField &field_;
+  double inverse_unit_;
+  bool can_evaluate_;
+  std::vector<char> is_handled_, is_plane_; // per surface of the field
+  std::vector<Near> near_;
+  std::size_t used_ = 0; // of values_, whose memory is kept
+  std::array<Values, lanes::MAX_SURFACES> values_;
+};
+
+} // namespace erkpa
