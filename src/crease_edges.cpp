@@ -32,7 +32,6 @@ public:
   std::vector<VertexPair>
   build ()
   {
-    vertices_.reserve (vertices_.positions.size () + loops_.size ());
     for (std::size_t i = 0; i < loops_.size (); ++i)
       if (meshed_[i].has_center)
       {

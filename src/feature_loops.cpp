@@ -9,6 +9,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 namespace erkpa
 {
@@ -33,8 +34,8 @@ public:
     Eigen::Vector3d middle = Eigen::Vector3d::Zero ();
     for (const int v : loop.ring)
       middle += position (v) / static_cast<double> (loop.ring.size ());
-    local_.gather (middle, NEAR * voxel_);
-    findSides (loop, result);
+    is_gathered_ = false;
+    findSides (loop, middle, result);
     if (result.crossings.empty ())
       return;
     const bool is_single = result.crossings.size () == 2; // one crease runs through: the vertex may be anywhere on it
@@ -80,14 +81,14 @@ private:
 
   /** \brief Find where creases cross the loop, and the sides of them that its vertices lie on. */
   void
-  findSides (const CellLoop &loop, MeshedLoop &result)
+  findSides (const CellLoop &loop, const Eigen::Vector3d &around, MeshedLoop &result)
   {
     sides_.clear ();
     const std::size_t n = loop.ring.size ();
     for (std::size_t i = 0; i < n; ++i)
     {
       const int a = loop.ring[i], b = loop.ring[(i + 1) % n];
-      if (keyOf (a) == keyOf (b) || !isCrease (std::min (a, b), std::max (a, b)))
+      if (keyOf (a) == keyOf (b) || !isCrease (std::min (a, b), std::max (a, b), around))
         continue;
       result.crossings.push_back (orderedPair (a, b));
       for (const int v : {a, b})
@@ -159,11 +160,13 @@ private:
 
   /** \brief Whether the pieces of f on the sides of two vertices turn against each other between them. */
   bool
-  isCrease (int a, int b)
+  isCrease (int a, int b, const Eigen::Vector3d &around)
   {
     constexpr double SMOOTH = 0.5; // of that turn: where the normals of the vertices say so already
     if (turnBetween (normalOf (a), normalOf (b)) < SMOOTH * LEAST_TURN)
       return false;
+    if (!std::exchange (is_gathered_, true))
+      local_.gather (around, NEAR * voxel_);
     const Eigen::Vector3d middle = 0.5 * (position (a) + position (b));
     const LocalSample one = local_.sampleOnSide (middle, sideOf (a)), other = local_.sampleOnSide (middle, sideOf (b));
     return one.isDefined () && other.isDefined () && turnBetween (one.gradient, other.gradient) > LEAST_TURN;
@@ -225,6 +228,7 @@ private:
   const SurfaceVertices &vertices_;
   LocalField local_;
   std::size_t channels_;
+  bool is_gathered_ = false;               // around the loop: most are where a sharp surface crosses a smooth one
   std::vector<int> sides_;                 // a vertex on each
   std::vector<Eigen::Vector3d> gradients_; // of the pieces of f on these sides where the crease was last found
 };

@@ -246,7 +246,10 @@ placeVertices (const ImplicitField &field, const PolygonizerOptions &options, Sp
                SurfaceVertices &vertices, PolygonizerReport &report, const ProgressCallback &progress)
 {
   const int channels = field.points ().channels;
-  vertices.resize (static_cast<std::size_t> (grid.numberVertices ()), channels);
+  constexpr double MORE = 0.05; // vertices on creases and borders follow, and shall not move the others
+  const auto count = static_cast<std::size_t> (grid.numberVertices ());
+  vertices.reserve (count + static_cast<std::size_t> (MORE * static_cast<double> (count)), channels);
+  vertices.resize (count, channels);
   if (field.faces () != nullptr)
     vertices.found.resize (vertices.positions.size ());
   const VertexPlacer placer (field, options, grid, vertices);

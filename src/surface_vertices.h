@@ -36,15 +36,14 @@ struct SurfaceVertices
 
   /** \brief Make room for \a size vertices, so that appending does not move the others. */
   void
-  reserve (std::size_t size)
+  reserve (std::size_t size, int channels)
   {
-    const std::size_t channels = positions.empty () ? 0 : attributes.size () / positions.size ();
     positions.reserve (size);
     normals.reserve (size);
     border_offsets.reserve (size);
     faces.reserve (size);
     side_keys.reserve (size);
-    attributes.reserve (size * channels);
+    attributes.reserve (size * static_cast<std::size_t> (channels));
   }
 
   /** \brief Append a copy of a vertex. */
