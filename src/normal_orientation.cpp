@@ -4,7 +4,7 @@
 #include "orientation_facets.h"
 #include "orientation_graph.h"
 #include "orientation_layers.h"
-#include "threads.h"
+#include "parallel_collect.h"
 
 #include <algorithm>
 #include <array>
@@ -73,32 +73,35 @@ isFree (const OrientedPoints &points, const Query &query, const Eigen::Vector3f 
 std::vector<SignedLink>
 linkNeighbors (const OrientedPoints &points, const NeighborSearch &search, const Facets &facets, int k, int threads)
 {
-  std::vector<std::vector<SignedLink>> of_node (points.size ());
-  parallelFor (
-      points.size (), threads, [] { return Query (); },
-      [&] (Query &query, std::size_t i)
+  const auto link = [&] (Query &query, std::size_t i, std::vector<SignedLink> &links)
+  {
+    const Eigen::Vector3f &x = points.positions[i];
+    search.nearestK (x, k, query.indices, query.squared);
+    query.order.clear ();
+    for (std::size_t j = 0; j < query.indices.size (); ++j)
+      if (query.indices[j] != static_cast<int> (i))
+        query.order.emplace_back (query.squared[j], query.indices[j]);
+    std::sort (query.order.begin (), query.order.end ());
+    const std::size_t step = std::max<std::size_t> (1, query.order.size () / LINKS);
+    for (std::size_t o = 0; o < query.order.size (); o += step)
+    {
+      const auto j = static_cast<std::size_t> (query.order[o].second);
+      const Eigen::Vector3f &y = points.positions[j];
+      const float weight = agreement (facets.of_node[i], facets.of_node[j], y - x, facets);
+      const bool free = isFree (points, query, 0.5f * (x + y), query.order[o].first);
+      links.push_back ({static_cast<int> (i), query.order[o].second, free ? weight : BLOCKED * weight});
+    }
+  };
+  constexpr std::size_t STRETCH = 512;
+  return parallelCollect<SignedLink> (
+      points.size (), threads,
+      [&] (std::size_t first, std::size_t last, std::vector<SignedLink> &links)
       {
-        const Eigen::Vector3f &x = points.positions[i];
-        search.nearestK (x, k, query.indices, query.squared);
-        query.order.clear ();
-        for (std::size_t j = 0; j < query.indices.size (); ++j)
-          if (query.indices[j] != static_cast<int> (i))
-            query.order.emplace_back (query.squared[j], query.indices[j]);
-        std::sort (query.order.begin (), query.order.end ());
-        const std::size_t step = std::max<std::size_t> (1, query.order.size () / LINKS);
-        for (std::size_t o = 0; o < query.order.size (); o += step)
-        {
-          const auto j = static_cast<std::size_t> (query.order[o].second);
-          const Eigen::Vector3f &y = points.positions[j];
-          const float weight = agreement (facets.of_node[i], facets.of_node[j], y - x, facets);
-          const bool free = isFree (points, query, 0.5f * (x + y), query.order[o].first);
-          of_node[i].push_back ({static_cast<int> (i), query.order[o].second, free ? weight : BLOCKED * weight});
-        }
-      });
-  std::vector<SignedLink> links;
-  for (const auto &some : of_node)
-    links.insert (links.end (), some.begin (), some.end ());
-  return links;
+        Query query;
+        for (std::size_t i = first; i < last; ++i)
+          link (query, i, links);
+      },
+      STRETCH);
 }
 
 /** \brief What the nodes say about their signs, and what the layers say about the outside. */

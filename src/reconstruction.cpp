@@ -137,25 +137,22 @@ makeField (const std::shared_ptr<const OrientedPoints> &points, const NeighborSe
 
 /** \brief Where sharp edges are known or sought, normals must be those of one face each; then find the edges. */
 Outcome
-respectSharpEdges (Options &options, OrientedPoints &points, Report &report)
+respectSharpEdges (const NeighborSearch &search, Options &options, OrientedPoints &points, Report &report)
 {
   std::vector<SharpSurface::ConstPtr> &surfaces = options.field.sharp_surfaces;
   const SharpOptions &sharp = options.sharp;
-  if (!sharp.automatic && sharp.faces.empty () && surfaces.empty ())
-    return {};
   const int threads = options.polygonizer.threads;
   const std::vector<Eigen::Vector3f> given = points.normals;
-  const NeighborSearch::ConstPtr search = makeGridSearch (points.positions, threads);
   if (options.normals.sharpen)
   {
     const StageClock clock (report.seconds_normals);
-    report.normals = refineNormals (*search, report.points.without_normal > 0, threads, points);
+    report.normals = refineNormals (search, report.points.without_normal > 0, threads, points);
   }
   const StageClock clock (report.seconds_sharp);
   std::vector<SharpSurface::ConstPtr> found, between;
   Outcome outcome;
   if (sharp.automatic)
-    outcome = findSharpSurfaces (points, *search, sharp, threads, found);
+    outcome = findSharpSurfaces (points, search, sharp, threads, found);
   if (outcome.ok () && !sharp.faces.empty ())
     outcome = sharpEdgesFromFaces (points, sharp.faces, sharp.face_tolerance, between);
   // Faces are told apart by smoothed normals, fitted by those given: fits average noise without looking over edges.
@@ -165,6 +162,26 @@ respectSharpEdges (Options &options, OrientedPoints &points, Report &report)
   report.sharp_surfaces = found;
   surfaces.insert (surfaces.end (), found.begin (), found.end ());
   return outcome;
+}
+
+/** \brief Estimate the normals that are missing, and see to it that they respect sharp edges. */
+Outcome
+prepareNormals (Options &options, OrientedPoints &points, Report &report)
+{
+  const bool is_missing = report.points.without_normal > 0;
+  const bool has_edges =
+      options.sharp.automatic || !options.sharp.faces.empty () || !options.field.sharp_surfaces.empty ();
+  if (!is_missing && !has_edges)
+    return {};
+  // Every point asks for its neighbours many times: a grid is quicker there than a tree.
+  const NeighborSearch::ConstPtr search = makeGridSearch (points.positions, options.polygonizer.threads);
+  Outcome outcome;
+  if (is_missing)
+  {
+    const StageClock clock (report.seconds_normals);
+    outcome = estimateNormals (points, *search, options.normals, report.orientation);
+  }
+  return outcome.ok () && has_edges ? respectSharpEdges (*search, options, points, report) : outcome;
 }
 
 } // namespace
@@ -184,15 +201,8 @@ buildField (const PointView &view, const Options &options, const SearchFactory &
   outcome = collect (view, make_search, options.polygonizer.threads, *points, search, report);
   if (!outcome.ok ())
     return outcome;
-  if (report.points.without_normal > 0)
-  {
-    const StageClock clock (report.seconds_normals);
-    outcome = estimateNormals (*points, *search, options.normals, report.orientation);
-    if (!outcome.ok ())
-      return outcome;
-  }
   Options complete = options;
-  outcome = respectSharpEdges (complete, *points, report);
+  outcome = prepareNormals (complete, *points, report);
   return outcome.ok () ? makeField (points, search, complete, field, report, progress) : outcome;
 }
 
