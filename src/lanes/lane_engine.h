@@ -34,13 +34,13 @@ public:
       support.radius ().store_unaligned (samples_.radius + first);
       value.store_unaligned (samples_.value + first);
       const B one (1.0f), zero (0.0f);
-      const B near = xsimd::select (fit.isInReach (), one, zero);
+      const B near = xsimd::select (fit.reach ().isInReach (), one, zero);
       B state = xsimd::select (fit.isDefined (), zero, one);
       storeFit (fit, first);
       if (settings_.gradients)
         storeGradients (support, fit, first, state);
       else if constexpr (FitT::IS_ENRICHED)
-        state = xsimd::select (fit.isAtCorner () && state < B (0.5f), B (2.0f), state);
+        state = xsimd::select (fit.kinks ().isAtCorner () && state < B (0.5f), B (2.0f), state);
       storeBytes (near, state, fit, first);
     }
   }
@@ -50,7 +50,7 @@ private:
   storeFit (const FitT &fit, std::size_t first) const
   {
     if (samples_.nearest_distance != nullptr)
-      fit.nearestDistance ().store_unaligned (samples_.nearest_distance + first);
+      fit.reach ().nearestDistance ().store_unaligned (samples_.nearest_distance + first);
     if (samples_.aside != nullptr)
       fit.aside ().store_unaligned (samples_.aside + first);
     if constexpr (!FitT::IS_ENRICHED)
@@ -86,8 +86,8 @@ private:
     float nears[B::size], states[B::size], nearest[B::size], support[B::size];
     near.store_unaligned (nears);
     state.store_unaligned (states);
-    fit.nearestNode ().store_unaligned (nearest);
-    fit.supportNodes ().store_unaligned (support);
+    fit.reach ().nearestNode ().store_unaligned (nearest);
+    fit.reach ().supportNodes ().store_unaligned (support);
     for (std::size_t i = 0; i < B::size; ++i)
     {
       samples_.in_reach[first + i] = nears[i] > 0.5f ? 1 : 0;
@@ -105,10 +105,10 @@ private:
   {
     for (std::size_t i = 0; i < B::size; ++i)
       samples_.active[first + i] = 0;
-    for (int s = 0; s < fit.surfaces (); ++s)
+    for (int s = 0; s < fit.kinks ().surfaces (); ++s)
     {
       float active[B::size];
-      fit.isActive (s).store_unaligned (active);
+      fit.kinks ().isActive (s).store_unaligned (active);
       for (std::size_t i = 0; i < B::size; ++i)
         samples_.active[first + i] |= active[i] > 0.5f ? 1u << s : 0u;
     }

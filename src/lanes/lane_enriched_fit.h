@@ -2,15 +2,16 @@
 #pragma once
 
 #include "lane_kernel.h"
+#include "lane_kinks.h"
+#include "lane_reach.h"
 #include "lane_support.h"
 #include "lane_terms.h"
 
 namespace erkpa::lanes
 {
 
-/** \brief FieldFit with kinks in lanes, for the Hermite constraint: after the polynomials a term θH(θ) for every sharp
- * surface, then their θ². See Enrichment for what they are and when they count; a lane where a term does not count has
- * zeros for it.
+/** \brief FieldFit with kinks in lanes, for the Hermite constraint: the terms of LaneKinks follow the polynomials. A
+ * lane where a term does not count has zeros for it. All sums are taken in u = (x_i - x) / ε.
  */
 template <typename B, Basis BASIS, template <typename> class KernelT>
 class LaneEnrichedFit
@@ -23,19 +24,22 @@ public:
   /** \param[in] first place of the evaluation point in the first lane */
   LaneEnrichedFit (const Settings &settings, const Nodes &nodes, const SharpSurfaces &sharp, std::size_t first,
                    const LaneSupport<B> &support)
-      : settings_ (settings), nodes_ (nodes), sharp_ (sharp), support_ (support), kernel_ (settings.kernel),
-        scale_ (support.inverse ()), kinks_ (static_cast<int> (sharp.count))
+      : nodes_ (nodes), support_ (support), kernel_ (settings.kernel), scale_ (support.inverse ()),
+        reach_ (settings, support.radius (), support.squaredRadius ()), kinks_ (sharp, first, scale_),
+        size_ (SIZE + 2 * kinks_.surfaces ())
   {
-    for (int s = 0; s < kinks_; ++s)
-      seeFrom (first, s);
     sumMoments ();
     TermsT::addGradientMoments (M_);
-    for (int s = 0; s < kinks_; ++s)
-      activate (s);
+    weight_ = M_[0];
+    kinks_.activate (weight_);
+    for (int j = 0; j < size_; ++j)
+      at_x_[j] = j < SIZE ? B (j == 0 ? 1.0f : 0.0f) : kinks_.atPoint (j - SIZE);
+    for (int j = SIZE; j < size_; ++j)
+      keep (j, kinks_.counts (j - SIZE));
     for (int a = 0; a < 3; ++a)
       centroid_[a] = M_[at (1 + a, 0)] / weight_;
     factorize ();
-    for (int j = 0; j < size (); ++j)
+    for (int j = 0; j < size_; ++j)
       c_[j] = b_[j];
     solve (c_);
   }
@@ -43,41 +47,28 @@ public:
   Mask
   isDefined () const
   {
-    return in_support_ >= B (static_cast<float> (settings_.min_nodes)) && weight_ > B (0.0f);
+    return reach_.isDefined () && weight_ > B (0.0f);
   }
 
   B
   value () const
   {
     B sum = c_[0];
-    for (int j = SIZE; j < size (); ++j)
+    for (int j = SIZE; j < size_; ++j)
       sum = xsimd::fma (c_[j], at_x_[j], sum);
     return support_.radius () * sum;
   }
 
-  B
-  supportNodes () const
+  const LaneReach<B> &
+  reach () const
   {
-    return in_support_;
+    return reach_;
   }
 
-  Mask
-  isInReach () const
+  const LaneKinks<B> &
+  kinks () const
   {
-    const B quarter = xsimd::floor (on_surface_ * B (0.25f));
-    return in_quarter_ > quarter || nearest_ <= B (settings_.near_enough * settings_.near_enough);
-  }
-
-  B
-  nearestNode () const
-  {
-    return nearest_node_;
-  }
-
-  B
-  nearestDistance () const
-  {
-    return xsimd::sqrt (nearest_);
+    return kinks_;
   }
 
   B
@@ -86,26 +77,13 @@ public:
     return xsimd::sqrt (dot (centroid_, centroid_));
   }
 
-  int
-  surfaces () const
-  {
-    return kinks_;
-  }
-
-  /** \brief 1 where a sharp surface passes between the nodes of the support. */
-  B
-  isActive (int surface) const
-  {
-    return active_[surface];
-  }
-
   /** \brief ∇f(x); see FieldFit::gradient (). */
   void
   gradient (const B *radius_gradient, B *gradient)
   {
     for (int a = 0; a < 3; ++a)
       growth_[a] = B (2.0f) * radius_gradient[a];
-    for (int j = 0; j < size (); ++j)
+    for (int j = 0; j < size_; ++j)
       a_[j] = at_x_[j];
     solve (a_);
     Change all, below[MAX_SURFACES], above[MAX_SURFACES];
@@ -113,11 +91,19 @@ public:
     for (std::size_t i = 0; i < support_.size (); ++i)
       addResidual (support_.node (i), by_u, by_radius, all, below, above);
     for (int a = 0; a < 3; ++a)
-      gradient[a] = xsimd::fma (growth_[a], by_radius, c_[1 + a] - by_u[a]);
-    for (int s = 0; s < kinks_; ++s)
     {
-      addSlopes (s, gradient);
-      subtractFade (s, radius_gradient, all, below[s], above[s], gradient);
+      gradient[a] = xsimd::fma (growth_[a], by_radius, c_[1 + a] - by_u[a]);
+      for (int j = SIZE; j < size_; ++j)
+        gradient[a] = xsimd::fma (c_[j], kinks_.slopeAtPoint (j - SIZE, a), gradient[a]);
+      const B of_all = all.along (a, growth_);
+      for (int s = 0; s < kinks_.surfaces (); ++s)
+      {
+        const B of_fade = kinks_.fadeGradient (s, of_all, below[s].along (a, growth_), above[s].along (a, growth_),
+                                               radius_gradient[a]);
+        const B part = a_[squareOf (s)] * c_[squareOf (s)];
+        gradient[a] =
+            xsimd::select (part > B (0.0f) || part < B (0.0f), xsimd::fnma (part, of_fade, gradient[a]), gradient[a]);
+      }
     }
   }
 
@@ -126,36 +112,19 @@ public:
   isUnsettled () const
   {
     constexpr float NEGLIGIBLE = 1e-5f;
-    Mask unsettled = isAtCorner ();
-    for (int j = 1; j < size (); ++j)
-      unsettled =
-          unsettled || xsimd::abs (a_[j] * c_[j] * raises_[j]) > B (NEGLIGIBLE); // a term that is zero has no part
+    Mask unsettled = kinks_.isAtCorner ();
+    for (int j = 1; j < size_; ++j)
+      unsettled = unsettled || xsimd::abs (a_[j] * c_[j] * raises_[j]) > B (NEGLIGIBLE);
     return unsettled;
-  }
-
-  /** \brief Where three sharp surfaces meet. */
-  Mask
-  isAtCorner () const
-  {
-    Mask corner = B (0.0f) > B (1.0f);
-    for (std::size_t p = 0; p < sharp_.pencil_count; ++p)
-    {
-      const int *of = sharp_.pencils[p];
-      corner = corner || active_[of[0]] * active_[of[1]] * active_[of[2]] > B (0.5f);
-    }
-    return corner;
   }
 
   B
   borderOffset (const B *gradient) const
   {
-    const B squared = dot (gradient, gradient), along = dot (centroid_, gradient) / squared;
-    B across[3];
-    for (int a = 0; a < 3; ++a)
-      across[a] = xsimd::fnma (along, gradient[a], centroid_[a]);
-    return xsimd::select (squared > B (0.0f), xsimd::sqrt (dot (across, across)), B (3e38f));
+    return offsetAcross (centroid_, gradient);
   }
 
+  /** \brief Weighted mean of an attribute. */
   B
   blend (const float *attribute) const
   {
@@ -171,8 +140,7 @@ public:
 
 private:
   using TermsT = Terms<B, BASIS>;
-  static constexpr int MAX_SIZE = SIZE + 2 * static_cast<int> (MAX_SURFACES);
-  static constexpr float LEAST_BALANCE = 0.2f, FADE = 0.1f, MIN_PRESENCE = 1e-6f; // see Enrichment and FieldFit
+  static constexpr int MAX_SIZE = SIZE + LaneKinks<B>::MAX_TERMS;
 
   /** \brief A sum of changes of weights with x: Σ w' u and Σ w' t², w' = dw/dt / t. */
   struct Change
@@ -196,16 +164,11 @@ private:
     }
   };
 
+  /** \brief Place of a surface's θ² among the terms. */
   int
-  size () const
+  squareOf (int s) const
   {
-    return SIZE + 2 * kinks_;
-  }
-
-  static B
-  dot (const B *a, const B *b)
-  {
-    return xsimd::fma (a[2], b[2], xsimd::fma (a[1], b[1], a[0] * b[0]));
+    return SIZE + kinks_.surfaces () + s;
   }
 
   B
@@ -216,122 +179,50 @@ private:
     return nodes_.confidence != nullptr ? weight * B (nodes_.confidence[node]) : weight;
   }
 
-  /** \brief Take the kink that is zero at x where it may be seen from either side. */
-  void
-  seeFrom (std::size_t first, int s)
-  {
-    const Surface &surface = sharp_.surfaces[s];
-    const B theta = B::load_unaligned (surface.theta_at + first), one (1.0f), zero (0.0f);
-    const auto holds_x = theta >= zero;
-    sign_[s] = surface.reversible ? xsimd::select (holds_x, -one, one) : one;
-    open_[s] = surface.reversible ? xsimd::select (holds_x, one, zero) : zero;
-    const B height = sign_[s] * theta * scale_;
-    const B on = isOn (height, s);
-    at_x_[SIZE + s] = on * height;
-    at_x_[SIZE + kinks_ + s] = theta * theta * scale_ * scale_;
-    for (int a = 0; a < 3; ++a)
-    {
-      const B g = B::load_unaligned (surface.gradient_at[a] + first);
-      slope_at_x_[s][a] = on * sign_[s] * g;
-      slope_at_x_[kinks_ + s][a] = B (2.0f) * theta * scale_ * g;
-    }
-  }
-
-  /** \brief 1 where a kink of this height is not zero. */
-  B
-  isOn (B height, int s) const
-  {
-    const B one (1.0f), zero (0.0f);
-    return xsimd::select (height > zero, one, xsimd::select (height < zero, zero, one - open_[s]));
-  }
-
-  /** \brief R and ∂R of the enrichment at a node. */
-  void
-  evaluateKinks (std::size_t node, B *R, B (*G)[3]) const
-  {
-    for (int s = 0; s < kinks_; ++s)
-    {
-      const Surface &surface = sharp_.surfaces[s];
-      const B theta = B (surface.theta[node]) * scale_, height = sign_[s] * theta, on = isOn (height, s);
-      R[s] = on * height;
-      R[kinks_ + s] = theta * theta;
-      for (int a = 0; a < 3; ++a)
-      {
-        const B g (surface.gradient[a][node]);
-        G[s][a] = on * sign_[s] * g;
-        G[kinks_ + s][a] = B (2.0f) * theta * g;
-      }
-    }
-  }
-
   void
   sumMoments ()
   {
-    const B zero (0.0f), one (1.0f);
-    for (int j = 0; j < size (); ++j)
+    for (int j = 0; j < size_; ++j)
     {
-      b_[j] = zero;
+      b_[j] = B (0.0f);
       for (int i = 0; i <= j; ++i)
-        M_[at (j, i)] = zero;
+        M_[at (j, i)] = B (0.0f);
     }
-    for (int s = 0; s < kinks_; ++s)
-      below_[s] = above_[s] = zero;
-    const B reach = xsimd::fma (support_.radius (), B (settings_.reach), B (settings_.offset));
-    const B reach_squared = reach * reach, radius_squared = support_.squaredRadius ();
-    in_support_ = on_surface_ = in_quarter_ = zero;
-    nearest_ = B (3e38f);
-    nearest_node_ = zero;
     for (std::size_t i = 0; i < support_.size (); ++i)
     {
       const std::size_t node = support_.node (i);
       B d[3], t;
       const B squared = support_.offset (node, d), weight = weightOf (squared, node, t);
-      const auto inside = squared < radius_squared;
-      in_support_ += xsimd::select (inside, one, zero);
-      if (node < nodes_.on_surface)
-      {
-        on_surface_ += xsimd::select (inside, one, zero);
-        in_quarter_ += xsimd::select (inside && squared <= reach_squared, one, zero);
-        const auto is_nearer = squared < nearest_;
-        nearest_node_ = xsimd::select (is_nearer, B (static_cast<float> (node)), nearest_node_);
-        nearest_ = xsimd::select (is_nearer, squared, nearest_);
-      }
+      reach_.count (node, node < nodes_.on_surface, squared);
+      kinks_.weigh (node, weight);
+      for (int a = 0; a < 3; ++a)
+        d[a] *= scale_;
       addNode (node, weight, d);
     }
-    weight_ = M_[0];
   }
 
   void
-  addNode (std::size_t node, B weight, const B *d)
+  addNode (std::size_t node, B weight, const B *u)
   {
-    B u[3], n[3], R[MAX_SIZE], G[2 * MAX_SURFACES][3];
-    n[0] = B (nodes_.nx[node]);
-    n[1] = B (nodes_.ny[node]);
-    n[2] = B (nodes_.nz[node]);
-    for (int a = 0; a < 3; ++a)
-      u[a] = d[a] * scale_;
-    const B q = dot (u, u), height = B (nodes_.lambda != nullptr ? nodes_.lambda[node] : 0.0f) * scale_;
-    TermsT::evaluate (u, q, R);
+    const B n[3] = {B (nodes_.nx[node]), B (nodes_.ny[node]), B (nodes_.nz[node])};
+    B R[MAX_SIZE], G[LaneKinks<B>::MAX_TERMS][3];
+    TermsT::evaluate (u, dot (u, u), R);
     TermsT::addNormal (weight, u, n, b_);
-    evaluateKinks (node, R + SIZE, G);
-    for (int s = 0; s < kinks_; ++s)
-      if (sharp_.surfaces[s].theta[node] < 0.0f)
-        below_[s] += weight;
-      else if (sharp_.surfaces[s].theta[node] > 0.0f)
-        above_[s] += weight;
-    for (int j = 0; j < size (); ++j)
+    kinks_.evaluate (node, R + SIZE, G);
+    const B height = B (nodes_.lambda != nullptr ? nodes_.lambda[node] : 0.0f) * scale_;
+    for (int j = 0; j < size_; ++j)
     {
       const B wr = weight * R[j];
       for (int i = 0; i <= j; ++i)
         M_[at (j, i)] = xsimd::fma (wr, R[i], M_[at (j, i)]);
       b_[j] = xsimd::fma (wr, height, b_[j]);
     }
-    for (int e = 0; e < 2 * kinks_; ++e)
+    for (int e = 0; e < size_ - SIZE; ++e)
       addSlopesOf (e, weight, u, n, G);
   }
 
-  /** \brief The products of the gradients of term e with those of the terms before it; polynomials' own follow later.
-   */
+  /** \brief The products of the gradients of kink term e with those of the terms before it; polynomials' own follow
+   * later. */
   void
   addSlopesOf (int e, B weight, const B *u, const B *n, const B (*G)[3])
   {
@@ -348,58 +239,37 @@ private:
     b_[j] += dot (weighted, n);
   }
 
-  /** \brief Strike out what does not count in a lane, and let squares fade. */
+  /** \brief Strike a term out in lanes where it does not count. */
   void
-  activate (int s)
-  {
-    const B zero (0.0f), one (1.0f);
-    const B on = xsimd::select (below_[s] > zero && above_[s] > zero, one, zero);
-    const B share = xsimd::min (xsimd::min (below_[s], above_[s]) / weight_ * B (1.0f / LEAST_BALANCE), one);
-    presence_[s] = share * share * (B (3.0f) - B (2.0f) * share);
-    active_[s] = on;
-    keep (SIZE + s, on);
-    keep (SIZE + kinks_ + s,
-          sharp_.surfaces[s].squared ? xsimd::select (presence_[s] > B (MIN_PRESENCE), on, zero) : zero);
-  }
-
-  void
-  keep (int j, B on)
+  keep (int j, B counts)
   {
     // A lane with nothing in reach holds NaNs, which a product would keep.
-    const auto is_kept = on > B (0.5f);
+    const auto is_kept = counts > B (0.5f);
     for (int i = 0; i <= j; ++i)
       M_[at (j, i)] = xsimd::select (is_kept, M_[at (j, i)], B (0.0f));
-    for (int i = j + 1; i < size (); ++i)
+    for (int i = j + 1; i < size_; ++i)
       M_[at (i, j)] = xsimd::select (is_kept, M_[at (i, j)], B (0.0f));
     b_[j] = xsimd::select (is_kept, b_[j], B (0.0f));
     at_x_[j] = xsimd::select (is_kept, at_x_[j], B (0.0f));
-  }
-
-  /** \brief How much the pivot of a square is raised since it fades. */
-  B
-  fadeOf (int s) const
-  {
-    const B p = xsimd::max (presence_[s], B (MIN_PRESENCE)), left = B (1.0f) - p;
-    return B (FADE) * weight_ * left * left / (p * p);
   }
 
   /** \brief See MomentSystem::factorize (). */
   void
   factorize ()
   {
-    for (int j = 0; j < size (); ++j)
+    for (int j = 0; j < size_; ++j)
     {
       raisePivot (j);
-      if (j >= SIZE + kinks_)
-        M_[at (j, j)] += fadeOf (j - SIZE - kinks_);
+      if (j >= squareOf (0))
+        M_[at (j, j)] += kinks_.fadeOf (j - squareOf (0));
       const B inverse = B (1.0f) / M_[at (j, j)];
-      for (int k = j + 1; k < size (); ++k)
+      for (int k = j + 1; k < size_; ++k)
       {
         const B factor = M_[at (k, j)] * inverse;
-        for (int i = k; i < size (); ++i)
+        for (int i = k; i < size_; ++i)
           M_[at (i, k)] = xsimd::fnma (M_[at (i, j)], factor, M_[at (i, k)]);
       }
-      for (int i = j + 1; i < size (); ++i)
+      for (int i = j + 1; i < size_; ++i)
         M_[at (i, j)] *= inverse;
     }
   }
@@ -408,7 +278,7 @@ private:
   raisePivot (int j)
   {
     constexpr float LEAST = 1e-9f, OF_POLYNOMIALS[] = {0.0f, 1e-10f, 1e-4f}, OF_KINKS = 2e-5f; // see PivotFloor
-    const bool is_kink = j >= SIZE && j < SIZE + kinks_;
+    const bool is_kink = j >= SIZE && j < squareOf (0);
     const B floor = B (is_kink ? OF_KINKS : OF_POLYNOMIALS[j < SIZE ? TermsT::degree (j) : 2]) * weight_;
     const B one (1.0f), zero (0.0f), pivot = M_[at (j, j)];
     const auto is_low = pivot < floor;
@@ -421,46 +291,45 @@ private:
   void
   solve (B *v) const
   {
-    const int n = size ();
-    for (int j = 0; j < n; ++j)
-      for (int i = j + 1; i < n; ++i)
+    for (int j = 0; j < size_; ++j)
+      for (int i = j + 1; i < size_; ++i)
         v[i] = xsimd::fnma (M_[at (i, j)], v[j], v[i]);
-    for (int j = 0; j < n; ++j)
+    for (int j = 0; j < size_; ++j)
       v[j] /= M_[at (j, j)];
-    for (int j = n - 2; j >= 0; --j)
-      for (int i = j + 1; i < n; ++i)
+    for (int j = size_ - 2; j >= 0; --j)
+      for (int i = j + 1; i < size_; ++i)
         v[j] = xsimd::fnma (M_[at (i, j)], v[i], v[j]);
   }
 
+  /** \brief The residual of the fit at a node, by which the change of its weight moves f; and that change by itself. */
   void
   addResidual (std::size_t node, B *by_u, B &by_radius, Change &all, Change *below, Change *above) const
   {
-    B d[3], t, n[3], R[MAX_SIZE], G[2 * MAX_SURFACES][3];
-    const B weight = weightOf (support_.offset (node, d), node, t);
+    B u[3], t, n[3] = {B (nodes_.nx[node]), B (nodes_.ny[node]), B (nodes_.nz[node])};
+    B R[MAX_SIZE], G[LaneKinks<B>::MAX_TERMS][3];
+    const B weight = weightOf (support_.offset (node, u), node, t);
     for (int a = 0; a < 3; ++a)
-      d[a] *= scale_;
-    n[0] = B (nodes_.nx[node]);
-    n[1] = B (nodes_.ny[node]);
-    n[2] = B (nodes_.nz[node]);
-    TermsT::evaluate (d, t * t, R);
-    evaluateKinks (node, R + SIZE, G);
+      u[a] *= scale_;
+    TermsT::evaluate (u, t * t, R);
+    kinks_.evaluate (node, R + SIZE, G);
     B share (0.0f), residual = B (nodes_.lambda != nullptr ? nodes_.lambda[node] : 0.0f) * scale_;
-    B of_shape[3], of_fit[3];
-    TermsT::slopes (a_, d, of_shape);
-    TermsT::slopes (c_, d, of_fit);
-    for (int j = 0; j < size (); ++j)
+    for (int j = 0; j < size_; ++j)
     {
       share = xsimd::fma (a_[j], R[j], share);
       residual = xsimd::fnma (c_[j], R[j], residual);
     }
-    for (int e = 0; e < 2 * kinks_; ++e)
-      for (int a = 0; a < 3; ++a)
+    B of_shape[3], of_fit[3];
+    TermsT::slopes (a_, u, of_shape);
+    TermsT::slopes (c_, u, of_fit);
+    for (int a = 0; a < 3; ++a)
+    {
+      for (int e = 0; e < size_ - SIZE; ++e)
       {
         of_shape[a] = xsimd::fma (a_[SIZE + e], G[e][a], of_shape[a]);
         of_fit[a] = xsimd::fma (c_[SIZE + e], G[e][a], of_fit[a]);
       }
-    for (int a = 0; a < 3; ++a)
       n[a] -= of_fit[a];
+    }
     const B of_gradients = dot (of_shape, n);
     residual = xsimd::fma (share, residual, of_gradients);
     by_radius = xsimd::fma (weight, of_gradients, by_radius);
@@ -470,61 +339,22 @@ private:
     const B force = slope * residual;
     by_radius = xsimd::fnma (B (0.5f) * t * t, force, by_radius);
     for (int a = 0; a < 3; ++a)
-      by_u[a] = xsimd::fma (force, d[a], by_u[a]);
-    all.add (slope, d, t);
-    for (int s = 0; s < kinks_; ++s)
-      if (sharp_.surfaces[s].theta[node] < 0.0f)
-        below[s].add (slope, d, t);
-      else if (sharp_.surfaces[s].theta[node] > 0.0f)
-        above[s].add (slope, d, t);
+      by_u[a] = xsimd::fma (force, u[a], by_u[a]);
+    all.add (slope, u, t);
+    kinks_.visitSides (node, [&] (int s, bool is_below) { (is_below ? below : above)[s].add (slope, u, t); });
   }
 
-  /** \brief The gradients of the kink and the square at x, by their coefficients. */
-  void
-  addSlopes (int s, B *gradient) const
-  {
-    for (const int e : {s, kinks_ + s})
-      for (int a = 0; a < 3; ++a)
-        gradient[a] = xsimd::fma (c_[SIZE + e], slope_at_x_[e][a], gradient[a]);
-  }
-
-  /** \brief What the change of a square's presence does: FieldFit::gradientOfFade () and the scale of the term. */
-  void
-  subtractFade (int s, const B *radius_gradient, const Change &all, const Change &below, const Change &above,
-                B *gradient) const
-  {
-    const int j = SIZE + kinks_ + s;
-    const B p = xsimd::max (presence_[s], B (MIN_PRESENCE)), left = B (1.0f) - p, fade = fadeOf (s);
-    const auto is_below = below_[s] < above_[s];
-    const B balance = xsimd::min (below_[s], above_[s]) / weight_, share = balance * B (1.0f / LEAST_BALANCE);
-    const B rise = xsimd::select (share < B (1.0f), B (6.0f / LEAST_BALANCE) * share * (B (1.0f) - share), B (0.0f));
-    const B by_presence = B (-2.0f * FADE) * weight_ * left / (p * p * p) * rise / weight_;
-    const B part = xsimd::select (active_[s] > B (0.5f), a_[j] * c_[j], B (0.0f));
-    for (int a = 0; a < 3; ++a)
-    {
-      const B of_all = all.along (a, growth_);
-      const B of_side = xsimd::select (is_below, below.along (a, growth_), above.along (a, growth_));
-      const B of_fade = fade / weight_ * of_all + by_presence * xsimd::fnma (balance, of_all, of_side) +
-                        B (4.0f) * fade * radius_gradient[a];
-      gradient[a] = xsimd::fnma (part, of_fade, gradient[a]);
-    }
-  }
-
-  const Settings &settings_;
   const Nodes &nodes_;
-  const SharpSurfaces &sharp_;
   const LaneSupport<B> &support_;
   KernelT<B> kernel_;
   B scale_;
-  int kinks_;
-  B sign_[MAX_SURFACES], open_[MAX_SURFACES]; // of θ; 1 where the kink is zero on the surface itself
-  B below_[MAX_SURFACES], above_[MAX_SURFACES], presence_[MAX_SURFACES], active_[MAX_SURFACES];
-  B at_x_[MAX_SIZE] = {B (1.0f), B (0.0f), B (0.0f), B (0.0f), B (0.0f)}; // R(x)
-  B slope_at_x_[2 * MAX_SURFACES][3];                                     // ∂R(x) of the enrichment
+  LaneReach<B> reach_;
+  LaneKinks<B> kinks_;
+  int size_;
+  B at_x_[MAX_SIZE]; // R(x)
   B M_[MAX_SIZE * (MAX_SIZE + 1) / 2], b_[MAX_SIZE], raises_[MAX_SIZE];
   B c_[MAX_SIZE], a_[MAX_SIZE]; // M^-1 b, M^-1 R(x)
   B weight_, centroid_[3], growth_[3];
-  B in_support_, on_surface_, in_quarter_, nearest_, nearest_node_;
 };
 
 } // namespace erkpa::lanes

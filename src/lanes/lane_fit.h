@@ -2,6 +2,7 @@
 #pragma once
 
 #include "lane_kernel.h"
+#include "lane_reach.h"
 #include "lane_support.h"
 #include "lane_system.h"
 
@@ -21,7 +22,8 @@ public:
   static constexpr bool IS_ENRICHED = false;
 
   LaneFit (const Settings &settings, const Nodes &nodes, const LaneSupport<B> &support)
-      : settings_ (settings), nodes_ (nodes), support_ (support), kernel_ (settings.kernel), scale_ (support.inverse ())
+      : nodes_ (nodes), support_ (support), kernel_ (settings.kernel), scale_ (support.inverse ()),
+        reach_ (settings, support.radius (), support.squaredRadius ())
   {
     sumMoments ();
     scaleMoments ();
@@ -44,7 +46,7 @@ public:
   Mask
   isDefined () const
   {
-    return in_support_ >= B (static_cast<float> (settings_.min_nodes)) && weight_ > B (0.0f);
+    return reach_.isDefined () && weight_ > B (0.0f);
   }
 
   /** \brief f(x): R(x) = (1, 0, ...). */
@@ -54,31 +56,10 @@ public:
     return support_.radius () * c_[0];
   }
 
-  /** \brief Number of nodes in the support. */
-  B
-  supportNodes () const
+  const LaneReach<B> &
+  reach () const
   {
-    return in_support_;
-  }
-
-  /** \brief Whether the data supports a surface here: see Settings::reach. */
-  Mask
-  isInReach () const
-  {
-    const B quarter = xsimd::floor (on_surface_ * B (0.25f));
-    return in_quarter_ > quarter || nearest_ <= B (settings_.near_enough * settings_.near_enough);
-  }
-
-  B
-  nearestNode () const
-  {
-    return nearest_node_;
-  }
-
-  B
-  nearestDistance () const
-  {
-    return xsimd::sqrt (nearest_);
+    return reach_;
   }
 
   /** \brief |centroid of the weighted nodes - x|, in ε; zero for the constant basis, which does not sum it up. */
@@ -133,16 +114,10 @@ public:
     return unsettled;
   }
 
-  /** \brief |centroid of the weighted nodes - x| across the gradient, in ε. */
   B
   borderOffset (const B *gradient) const
   {
-    const B squared = dot (gradient, gradient);
-    const B along = dot (centroid_, gradient) / squared;
-    B across[3];
-    for (int a = 0; a < 3; ++a)
-      across[a] = xsimd::fnma (along, gradient[a], centroid_[a]);
-    return xsimd::select (squared > B (0.0f), xsimd::sqrt (dot (across, across)), B (3e38f));
+    return offsetAcross (centroid_, gradient);
   }
 
   /** \brief Weighted mean of an attribute. */
@@ -163,12 +138,6 @@ private:
   using TermsT = Terms<B, BASIS>;
   // With other constraints pivots that are raised are a rare thing.
   static constexpr bool RAISES_MATTER = CONSTRAINT == Constraint::FUNCTIONAL;
-
-  static B
-  dot (const B *a, const B *b)
-  {
-    return xsimd::fma (a[2], b[2], xsimd::fma (a[1], b[1], a[0] * b[0]));
-  }
 
   void
   normalOf (std::size_t node, B *n) const
@@ -191,9 +160,6 @@ private:
   void
   sumMoments ()
   {
-    const B reach = xsimd::fma (support_.radius (), B (settings_.reach), B (settings_.offset)), far (3e38f);
-    const B reach_squared = reach * reach, radius_squared = support_.squaredRadius ();
-    B in_support (0.0f), on_surface (0.0f), in_quarter (0.0f), nearest = far, nearest_node (0.0f);
     LaneSystem<TermsT, B> sums;
     const std::size_t count = support_.size ();
     for (std::size_t i = 0; i < count; ++i)
@@ -205,25 +171,10 @@ private:
       B weight = kernel_.weight (t);
       if (nodes_.confidence != nullptr)
         weight *= B (nodes_.confidence[node]);
-      const B one (1.0f), zero (0.0f);
-      const auto inside = squared < radius_squared;
-      in_support += xsimd::select (inside, one, zero);
-      if (node < nodes_.on_surface)
-      {
-        on_surface += xsimd::select (inside, one, zero);
-        in_quarter += xsimd::select (inside && squared <= reach_squared, one, zero);
-        const auto is_nearer = squared < nearest;
-        nearest_node = xsimd::select (is_nearer, B (static_cast<float> (node)), nearest_node);
-        nearest = xsimd::select (is_nearer, squared, nearest);
-      }
+      reach_.count (node, node < nodes_.on_surface, squared);
       addNode (node, weight, d, squared, sums);
     }
     system_ = sums;
-    in_support_ = in_support;
-    on_surface_ = on_surface;
-    in_quarter_ = in_quarter;
-    nearest_ = nearest;
-    nearest_node_ = nearest_node;
   }
 
   void
@@ -381,16 +332,15 @@ private:
     }
   }
 
-  const Settings &settings_;
   const Nodes &nodes_;
   const LaneSupport<B> &support_;
   KernelT<B> kernel_;
   B scale_;
+  LaneReach<B> reach_;
   LaneSystem<TermsT, B> system_;
   B centroid_[3], spread_, weight_;
   B c_[SIZE]; // M^-1 b
   B a_[SIZE]; // M^-1 R(x)
-  B in_support_, on_surface_, in_quarter_, nearest_, nearest_node_;
 };
 
 } // namespace erkpa::lanes

@@ -133,7 +133,9 @@ main (int argc, char **argv)
     addLanes (*engine[e]);
   using bench::Place;
   for (std::size_t e = 0; e < engines; ++e)
-    addField (std::string ("block/") + engine[e]->name + "/edge/no_planes", {Place::EDGE, false, engine[e], false});
+    for (const bool planes : {false, true})
+      addField (std::string ("block/") + engine[e]->name + (planes ? "/edge/planes" : "/edge/no_planes"),
+                {Place::EDGE, planes, engine[e], false});
   for (const auto &[name, place] : {std::pair ("edge", Place::EDGE), std::pair ("corner", Place::CORNER)})
     for (const bool planes : {false, true})
       addField (std::string ("scalar/") + name + (planes ? "/planes" : "/no_planes"), {place, planes, nullptr, false});

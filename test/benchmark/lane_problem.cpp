@@ -156,11 +156,16 @@ LaneProblem::evaluate (const erkpa::lanes::Engine &engine)
   const erkpa::lanes::Points points{
       POINTS, points_[0].data (), points_[1].data (), points_[2].data (), bounds_.data (), guesses_.data (), {},
       POINTS};
-  const erkpa::lanes::Samples samples{
-      values_.data (),         radii_.data (), in_reach_.data (),
-      states_.data (),         nullptr,        {gradients_[0].data (), gradients_[1].data (), gradients_[2].data ()},
-      border_offsets_.data (), nullptr,        supports_.data ()};
-  engine.evaluate (settings_, nodes, points, {list_.data (), rows_.data ()}, samples);
+  erkpa::lanes::Samples samples{};
+  samples.value = values_.data ();
+  samples.radius = radii_.data ();
+  samples.in_reach = in_reach_.data ();
+  samples.state = states_.data ();
+  samples.support = supports_.data ();
+  for (std::size_t a = 0; a < 3; ++a)
+    samples.gradient[a] = gradients_[a].data ();
+  samples.border_offset = border_offsets_.data ();
+  engine.evaluate (settings_, nodes, points, erkpa::lanes::SharpSurfaces{}, {list_.data (), rows_.data ()}, samples);
 }
 
 std::size_t

@@ -1,0 +1,16 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "smooth_links.h"
+
+#include <vector>
+
+namespace erkpa
+{
+
+/** \brief For every node the nodes that must not be on its face; both see it so. */
+NodeLists
+findNodesApart (const OrientedPoints &points, const NeighborSearch &search, const SegmentationOptions &options,
+                const NodeLists &links, const std::vector<char> &is_suspect, int threads);
+
+} // namespace erkpa
