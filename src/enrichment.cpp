@@ -280,16 +280,29 @@ Enrichment::addCornerTerms (const Pencil &pencil)
     addTerm ({b, c, a, 1.0, 1.0, false, false, presence});
 }
 
-void
-Enrichment::evaluate (const Term &term, const Theta &a, const Theta *b, double radius, double &value,
-                      Eigen::Vector3d &gradient) const
+/** \brief Whether it is the second of a corner's surfaces that is lower.
+ *
+ * The third says where they are equal, and the kink there sees its side: a node on it, where rounding decides, must be
+ * on the same side for both.
+ */
+bool
+Enrichment::isSecondLower (const Term &term, const Theta &a, const Theta &b, const Theta &third) const
 {
-  double height = term.scale_a * a.value;
-  Eigen::Vector3d slope = term.scale_a * a.gradient;
-  if (b != nullptr && term.scale_b * b->value < height)
+  const double turn = (term.scale_a * a.gradient - term.scale_b * b.gradient).dot (third.gradient);
+  return turn > 0.0 ? third.value >= 0.0 : third.value < 0.0;
+}
+
+void
+Enrichment::evaluate (const Term &term, const Theta &a, const Theta *b, const Theta *third, double radius,
+                      double &value, Eigen::Vector3d &gradient) const
+{
+  double scale = term.scale_a, height = scale * a.value;
+  Eigen::Vector3d slope = scale * a.gradient;
+  if (b != nullptr && (jumps_ ? term.scale_b * b->value < height : isSecondLower (term, a, *b, *third)))
   {
-    height = term.scale_b * b->value;
-    slope = term.scale_b * b->gradient;
+    scale = term.scale_b;
+    height = scale * b->value;
+    slope = scale * b->gradient;
   }
   if (term.is_square)
   {
@@ -299,7 +312,9 @@ Enrichment::evaluate (const Term &term, const Theta &a, const Theta *b, double r
   }
   value = 0.0;
   gradient.setZero ();
-  if (!(height > 0.0) && (term.open || height < 0.0))
+  // A node on a sharp surface is above it for the slopes of all kinks, whichever side they are seen from.
+  const bool counts_at_zero = jumps_ ? !term.open : scale > 0.0;
+  if (!(height > 0.0) && (!counts_at_zero || height < 0.0))
     return;
   value = jumps_ ? 1.0 : height / radius;
   if (!jumps_)
@@ -311,8 +326,9 @@ Enrichment::atNode (int term, int slot, double radius, double &value, Eigen::Vec
 {
   const Term &t = terms_[static_cast<std::size_t> (term)];
   const auto i = static_cast<std::size_t> (slot);
-  const Theta *b = t.second < 0 ? nullptr : &near_[static_cast<std::size_t> (t.second)].at_nodes[i];
-  evaluate (t, near_[static_cast<std::size_t> (t.first)].at_nodes[i], b, radius, value, gradient);
+  const auto theta_of = [&] (int near)
+  { return near < 0 ? nullptr : &near_[static_cast<std::size_t> (near)].at_nodes[i]; };
+  evaluate (t, *theta_of (t.first), theta_of (t.second), theta_of (t.third), radius, value, gradient);
 }
 
 void
@@ -324,8 +340,9 @@ Enrichment::atPoint (int term, double radius, double &value, Eigen::Vector3d &gr
     continueToPoint (t, radius, value, gradient);
     return;
   }
-  const Theta *b = t.second < 0 ? nullptr : &near_[static_cast<std::size_t> (t.second)].at_point;
-  evaluate (t, near_[static_cast<std::size_t> (t.first)].at_point, b, radius, value, gradient);
+  const auto theta_of = [&] (int near)
+  { return near < 0 ? nullptr : &near_[static_cast<std::size_t> (near)].at_point; };
+  evaluate (t, *theta_of (t.first), theta_of (t.second), theta_of (t.third), radius, value, gradient);
 }
 
 /** \brief Of the smooth pieces of a term take the one that holds at the place it is looked at from. */

@@ -180,8 +180,11 @@ private:
     return *field_.enrichingSurfaces ()[static_cast<std::size_t> (near.surface)];
   }
 
+  bool
+  isSecondLower (const Term &term, const Theta &a, const Theta &b, const Theta &third) const;
+
   void
-  evaluate (const Term &term, const Theta &a, const Theta *b, double radius, double &value,
+  evaluate (const Term &term, const Theta &a, const Theta *b, const Theta *third, double radius, double &value,
             Eigen::Vector3d &gradient) const;
 
   void

@@ -2,6 +2,7 @@
 #include "field_tests.h"
 
 #include "block_field.h"
+#include "face_vote.h"
 #include "local_field.h"
 #include "support.h"
 
@@ -275,6 +276,27 @@ TEST_F (BlockFieldTest, AgreesWithTheDefinitionWhereSharpSurfacesPass)
       EXPECT_GT (keys, settled - settled / 100) << "a node on the very rim of a support may count or not";
     }
   }
+}
+
+/** \brief Its continuation would close gaps and make flaps where the data ends. */
+TEST (FaceVote, AFaceHasNoSayFartherOutThanItsNodesReach)
+{
+  const auto vote_with = [] (double near, double far)
+  {
+    erkpa::FaceVote vote;
+    vote.start (1.0);
+    vote.addVoter ({0, Vector3d::Zero (), 1.0});
+    vote.addFace (7, -0.5, Vector3d::UnitX (), near, {0.0});
+    vote.addFace (8, 0.5, Vector3d::UnitY (), far, {0.5});
+    vote.dropFarFaces ();
+    return vote;
+  };
+  const auto groups_of = [] (const erkpa::FaceVote &vote) { return vote.electTree ().faces; };
+  EXPECT_EQ (groups_of (vote_with (0.2, 0.9)), 2);
+  EXPECT_EQ (groups_of (vote_with (0.2, 1.4)), 1);
+  EXPECT_EQ (vote_with (0.2, 1.4).groupOf (0), 7);
+  EXPECT_EQ (vote_with (1.4, 0.2).groupOf (0), 8);
+  EXPECT_EQ (groups_of (vote_with (1.4, 1.5)), 2) << "unless there is no other";
 }
 
 } // namespace

@@ -104,6 +104,25 @@ twoSheets (double end, double gap, double spacing)
   return samples;
 }
 
+/** \brief The points of a cube's faces on a lattice: many lie on the planes that halve its edges. */
+shapes::Samples
+latticeCube (double half, double step)
+{
+  shapes::Samples samples;
+  for (int axis = 0; axis < 3; ++axis)
+    for (double u = -half + 0.5 * step; u < half; u += step)
+      for (double v = -half + 0.5 * step; v < half; v += step)
+        for (const double side : {-half, half})
+        {
+          Vector3d p;
+          p[axis] = side;
+          p[(axis + 1) % 3] = u;
+          p[(axis + 2) % 3] = v;
+          samples.add (p, Vector3d::Unit (axis) * (side > 0.0 ? 1.0 : -1.0));
+        }
+  return samples;
+}
+
 /** \brief A mesh with its creases. */
 struct SharpMesh
 {
@@ -439,6 +458,30 @@ TEST (SharpEdges, LeaveASheetItsBorderThoughAnotherGoesOnBesideIt)
   }
   EXPECT_NEAR (farthest, end, 2.0 * spacing);
   EXPECT_NEAR (farthest_below, 2.0, 2.0 * spacing);
+}
+
+/** \brief Points on a sharp surface are on either of its sides as rounding has it: for all terms on the same. */
+TEST (SharpEdges, OfALatticeAreExactAtTheCornersToo)
+{
+  const double half = 1.0, step = 0.1;
+  Stage stage;
+  stage.setInputCloud (shapes::cloud<pcl::PointNormal> (latticeCube (half, step)));
+  for (int a = 0; a < 3; ++a)
+    for (const float side : {-1.0f, 1.0f})
+    {
+      std::vector<float> plane (4, 0.0f);
+      plane[static_cast<std::size_t> (a)] = 1.0f;
+      plane[static_cast<std::size_t> ((a + 1) % 3)] = side;
+      ASSERT_TRUE (stage.addSharpEdge (coefficients (plane)));
+    }
+  const SharpMesh result = meshOf (stage);
+  expectClosedBall (result);
+  EXPECT_EQ (result.creases.size (), 12u);
+  EXPECT_EQ (result.corners.size (), 8u);
+  for (const Eigen::Vector3f &v : result.mesh.vertices)
+    EXPECT_NEAR (v.cwiseAbs ().maxCoeff (), half, 1e-5);
+  for (const int corner : result.corners)
+    EXPECT_NEAR ((result.at (corner).cwiseAbs () - Vector3d::Constant (half)).norm (), 0.0, 1e-4);
 }
 
 TEST (SharpEdges, HaveTheNormalsOfEachSideWhereTheyAreSplit)
