@@ -63,7 +63,7 @@ public:
   static std::uint64_t
   extendSideKey (std::uint64_t key, int surface, bool is_below)
   {
-    const auto side = static_cast<std::uint64_t> (2 * surface + (is_below ? 1 : 2));
+    const auto side = 2 * static_cast<std::uint64_t> (surface) + (is_below ? 1 : 2);
     return (key ^ side) * 0x100000001b3ULL + 1; // FNV-1a
   }
 

@@ -112,7 +112,7 @@ private:
     };
     if (take (start))
       return count;
-    for (std::size_t next = 0; next < front_.size (); ++next)
+    for (std::size_t next = 0; next < front_.size (); ++next) // NOLINT(modernize-loop-convert): it grows meanwhile
     {
       listUnknown (links_[static_cast<std::size_t> (ball_[static_cast<std::size_t> (front_[next])])], group);
       for (const int slot : linked_)

@@ -34,6 +34,7 @@ DisjointSets
 chainSeparations (const std::vector<Separation> &separations, double step)
 {
   std::vector<Eigen::Vector3f> positions;
+  positions.reserve (separations.size ());
   for (const Separation &separation : separations)
     positions.push_back (separation.position);
   DisjointSets chains (separations.size ());

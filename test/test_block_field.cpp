@@ -72,6 +72,22 @@ protected:
     return worst;
   }
 
+  /** \brief Evaluates at some points of a ball; returns them. */
+  static std::vector<Vector3d>
+  evaluateAround (BlockField &block, const Vector3d &middle, double extent)
+  {
+    EXPECT_TRUE (block.gather (middle, extent));
+    std::vector<Vector3d> points;
+    for (int i = 0; i < 21; ++i)
+    {
+      points.push_back (middle + extent * randomPoint (0.57));
+      EXPECT_TRUE (block.canEvaluateAt (points.back ()));
+      block.addPoint (points.back ());
+    }
+    block.evaluate (true);
+    return points;
+  }
+
 private:
   static void
   addValue (LocalField &local, const Vector3d &x, const BlockField &block, std::size_t i, Difference &worst)
@@ -193,16 +209,7 @@ TEST_F (BlockFieldTest, AgreesWithTheDefinitionWhereFacesMeet)
       int compared = 0, faces = 0, slopes = 0;
       for (const Vector3d &middle : shapes::boxEdgePoints ({0.5, 0.35, 0.25}, 4))
       {
-        ASSERT_TRUE (block.gather (middle, spacing));
-        std::vector<Vector3d> points;
-        for (int i = 0; i < 21; ++i)
-          points.push_back (middle + spacing * randomPoint (0.57));
-        for (const Vector3d &x : points)
-        {
-          ASSERT_TRUE (block.canEvaluateAt (x));
-          block.addPoint (x);
-        }
-        block.evaluate (true);
+        const std::vector<Vector3d> points = evaluateAround (block, middle, spacing);
         for (std::size_t i = 0; i < points.size (); ++i)
         {
           local.gather (points[i], 0.0);
@@ -249,16 +256,7 @@ TEST_F (BlockFieldTest, AgreesWithTheDefinitionWhereSharpSurfacesPass)
       int compared = 0, settled = 0, keys = 0;
       for (const Vector3d &middle : middles)
       {
-        ASSERT_TRUE (block.gather (middle, spacing));
-        std::vector<Vector3d> points;
-        for (int i = 0; i < 21; ++i)
-          points.push_back (middle + spacing * randomPoint (0.57));
-        for (const Vector3d &x : points)
-        {
-          ASSERT_TRUE (block.canEvaluateAt (x));
-          block.addPoint (x);
-        }
-        block.evaluate (true);
+        const std::vector<Vector3d> points = evaluateAround (block, middle, spacing);
         for (std::size_t i = 0; i < points.size (); ++i)
         {
           local.gather (points[i], 0.0);
