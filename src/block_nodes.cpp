@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "block_nodes.h"
 
+#include <algorithm>
 #include <cmath>
 
 namespace erkpa
@@ -63,6 +64,15 @@ BlockNodes::boundOfKth (std::size_t k, double guess) const
     (count_within (middle) < k ? low : high) = middle;
   }
   return high;
+}
+
+double
+BlockNodes::distanceOfKth (std::size_t k)
+{
+  sorted_.assign (squared_.begin (), squared_.begin () + static_cast<std::ptrdiff_t> (count_));
+  const auto kth = sorted_.begin () + static_cast<std::ptrdiff_t> (k - 1);
+  std::nth_element (sorted_.begin (), kth, sorted_.end ());
+  return std::sqrt (static_cast<double> (*kth));
 }
 
 void

@@ -68,6 +68,10 @@ public:
   double
   boundOfKth (std::size_t k, double guess) const;
 
+  /** \brief The distance of the k-th of the nodes that were found; there are so many. */
+  double
+  distanceOfKth (std::size_t k);
+
   /** \brief Make the arrays; off-surface points come after the nodes. */
   void
   copy ();
@@ -109,6 +113,7 @@ private:
   std::size_t count_ = 0, value_points_ = 0;
   std::vector<std::uint32_t> places_; // in the table
   std::vector<float> squared_;        // distances from the center
+  std::vector<float> sorted_;         // the same, partly sorted
   std::array<std::vector<float>, 3> positions_, normals_;
   std::vector<float> lambdas_, confidences_, attributes_;
 };

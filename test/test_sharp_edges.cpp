@@ -484,6 +484,29 @@ TEST (SharpEdges, OfALatticeAreExactAtTheCornersToo)
     EXPECT_NEAR ((result.at (corner).cwiseAbs () - Vector3d::Constant (half)).norm (), 0.0, 1e-4);
 }
 
+/** \brief What a thread has evaluated before must not decide which points go together. */
+TEST (SharpEdges, ThatAreGivenAreTheSameForAnyNumberOfThreads)
+{
+  const shapes::Samples samples = shapes::box (12000, HALF);
+  const auto mesh_with = [&samples] (int threads)
+  {
+    Stage stage;
+    stage.setInputCloud (shapes::cloud<pcl::PointNormal> (samples));
+    for (const Eigen::Vector4d &b : shapes::boxBisectors (HALF))
+      stage.addSharpEdge (coefficients ({float (b[0]), float (b[1]), float (b[2]), float (b[3])}));
+    stage.setNumberOfThreads (threads);
+    return meshOf (stage).mesh;
+  };
+  const erkpa::TriangleMesh one = mesh_with (1), three = mesh_with (3);
+  ASSERT_EQ (one.vertices.size (), three.vertices.size ());
+  EXPECT_TRUE (one.triangles == three.triangles);
+  for (std::size_t v = 0; v < one.vertices.size (); ++v)
+  {
+    ASSERT_EQ (one.vertices[v], three.vertices[v]);
+    ASSERT_EQ (one.normals[v], three.normals[v]);
+  }
+}
+
 TEST (SharpEdges, HaveTheNormalsOfEachSideWhereTheyAreSplit)
 {
   const TurnedBox box (12000);
