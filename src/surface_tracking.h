@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "block_field.h"
 #include "local_field.h"
 #include "sparse_grid.h"
 
@@ -99,25 +98,5 @@ private:
   std::size_t evaluated_blocks_ = 0; // a block counts once per front that asks for nodes of it
   std::vector<GridPoint> cells_of_nodes_;
 };
-
-/** \brief The field as one thread asks it for the nodes of a grid. */
-struct GridField
-{
-  GridField (const ImplicitField &field, const PolygonizerOptions &options, double voxel_size);
-
-  LocalField local; ///< walls so thin that both sides cross the same edge of the grid are thickened
-  BlockField block; ///< where nothing enriches the field; the same
-
-  void
-  addTo (PolygonizerReport &report) const
-  {
-    report.evaluations += local.evaluations () + block.evaluations ();
-    report.support_nodes += local.supportNodes () + block.supportNodes ();
-  }
-};
-
-/** \brief Whether a surface may be at a point: not farther from the nodes than the data supports. */
-bool
-isInReach (const LocalField &local, const PolygonizerOptions &options, double voxel_size);
 
 } // namespace erkpa

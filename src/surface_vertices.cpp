@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "surface_vertices.h"
 
+#include "block_evaluator.h"
 #include "crease_solver.h"
-#include "surface_tracking.h"
 #include "threads.h"
 
 #include <algorithm>

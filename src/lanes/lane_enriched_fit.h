@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "lane_kernel.h"
 #include "lane_kinks.h"
 #include "lane_reach.h"
 #include "lane_support.h"
 #include "lane_terms.h"
+#include "lane_weights.h"
 
 namespace erkpa::lanes
 {
@@ -24,7 +24,7 @@ public:
   /** \param[in] first place of the evaluation point in the first lane */
   LaneEnrichedFit (const Settings &settings, const Nodes &nodes, const SharpSurfaces &sharp, std::size_t first,
                    const LaneSupport<B> &support)
-      : nodes_ (nodes), support_ (support), kernel_ (settings.kernel), scale_ (support.inverse ()),
+      : nodes_ (nodes), support_ (support), weights_ (settings, nodes, support), scale_ (support.inverse ()),
         reach_ (settings, support.radius (), support.squaredRadius ()), kinks_ (sharp, first, scale_),
         size_ (SIZE + 2 * kinks_.surfaces ())
   {
@@ -128,14 +128,7 @@ public:
   B
   blend (const float *attribute) const
   {
-    B sum (0.0f);
-    for (std::size_t i = 0; i < support_.size (); ++i)
-    {
-      const std::size_t node = support_.node (i);
-      B d[3], t;
-      sum = xsimd::fma (weightOf (support_.offset (node, d), node, t), B (attribute[node]), sum);
-    }
-    return sum / weight_;
+    return weights_.sum (attribute) / weight_;
   }
 
 private:
@@ -171,14 +164,6 @@ private:
     return SIZE + kinks_.surfaces () + s;
   }
 
-  B
-  weightOf (B squared, std::size_t node, B &t) const
-  {
-    t = xsimd::min (xsimd::sqrt (squared) * scale_, B (1.0f));
-    const B weight = kernel_.weight (t);
-    return nodes_.confidence != nullptr ? weight * B (nodes_.confidence[node]) : weight;
-  }
-
   void
   sumMoments ()
   {
@@ -191,8 +176,8 @@ private:
     for (std::size_t i = 0; i < support_.size (); ++i)
     {
       const std::size_t node = support_.node (i);
-      B d[3], t;
-      const B squared = support_.offset (node, d), weight = weightOf (squared, node, t);
+      B d[3], squared, t;
+      const B weight = weights_.weight (node, d, squared, t);
       reach_.count (node, node < nodes_.on_surface, squared);
       kinks_.weigh (node, weight);
       for (int a = 0; a < 3; ++a)
@@ -204,12 +189,12 @@ private:
   void
   addNode (std::size_t node, B weight, const B *u)
   {
-    const B n[3] = {B (nodes_.nx[node]), B (nodes_.ny[node]), B (nodes_.nz[node])};
-    B R[MAX_SIZE], G[LaneKinks<B>::MAX_TERMS][3];
+    B n[3], R[MAX_SIZE], G[LaneKinks<B>::MAX_TERMS][3];
+    weights_.normal (node, n);
     TermsT::evaluate (u, dot (u, u), R);
     TermsT::addNormal (weight, u, n, b_);
     kinks_.evaluate (node, R + SIZE, G);
-    const B height = B (nodes_.lambda != nullptr ? nodes_.lambda[node] : 0.0f) * scale_;
+    const B height = weights_.lambda (node) * scale_;
     for (int j = 0; j < size_; ++j)
     {
       const B wr = weight * R[j];
@@ -305,14 +290,14 @@ private:
   void
   addResidual (std::size_t node, B *by_u, B &by_radius, Change &all, Change *below, Change *above) const
   {
-    B u[3], t, n[3] = {B (nodes_.nx[node]), B (nodes_.ny[node]), B (nodes_.nz[node])};
-    B R[MAX_SIZE], G[LaneKinks<B>::MAX_TERMS][3];
-    const B weight = weightOf (support_.offset (node, u), node, t);
+    B u[3], squared, t, n[3], R[MAX_SIZE], G[LaneKinks<B>::MAX_TERMS][3];
+    const B weight = weights_.weight (node, u, squared, t);
+    weights_.normal (node, n);
     for (int a = 0; a < 3; ++a)
       u[a] *= scale_;
     TermsT::evaluate (u, t * t, R);
     kinks_.evaluate (node, R + SIZE, G);
-    B share (0.0f), residual = B (nodes_.lambda != nullptr ? nodes_.lambda[node] : 0.0f) * scale_;
+    B share (0.0f), residual = weights_.lambda (node) * scale_;
     for (int j = 0; j < size_; ++j)
     {
       share = xsimd::fma (a_[j], R[j], share);
@@ -333,10 +318,7 @@ private:
     const B of_gradients = dot (of_shape, n);
     residual = xsimd::fma (share, residual, of_gradients);
     by_radius = xsimd::fma (weight, of_gradients, by_radius);
-    B slope = kernel_.slope (t);
-    if (nodes_.confidence != nullptr)
-      slope *= B (nodes_.confidence[node]);
-    const B force = slope * residual;
+    const B slope = weights_.slope (node, t), force = slope * residual;
     by_radius = xsimd::fnma (B (0.5f) * t * t, force, by_radius);
     for (int a = 0; a < 3; ++a)
       by_u[a] = xsimd::fma (force, u[a], by_u[a]);
@@ -346,7 +328,7 @@ private:
 
   const Nodes &nodes_;
   const LaneSupport<B> &support_;
-  KernelT<B> kernel_;
+  LaneWeights<B, KernelT> weights_;
   B scale_;
   LaneReach<B> reach_;
   LaneKinks<B> kinks_;

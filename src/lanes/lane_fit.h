@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "lane_kernel.h"
 #include "lane_reach.h"
 #include "lane_support.h"
 #include "lane_system.h"
+#include "lane_weights.h"
 
 namespace erkpa::lanes
 {
@@ -22,7 +22,7 @@ public:
   static constexpr bool IS_ENRICHED = false;
 
   LaneFit (const Settings &settings, const Nodes &nodes, const LaneSupport<B> &support)
-      : nodes_ (nodes), support_ (support), kernel_ (settings.kernel), scale_ (support.inverse ()),
+      : nodes_ (nodes), support_ (support), weights_ (settings, nodes, support), scale_ (support.inverse ()),
         reach_ (settings, support.radius (), support.squaredRadius ())
   {
     sumMoments ();
@@ -124,38 +124,13 @@ public:
   B
   blend (const float *attribute) const
   {
-    B sum (0.0f);
-    for (std::size_t i = 0; i < support_.size (); ++i)
-    {
-      const std::size_t node = support_.node (i);
-      B d[3], t;
-      sum = xsimd::fma (weightOf (node, d, t), B (attribute[node]), sum);
-    }
-    return sum / weight_;
+    return weights_.sum (attribute) / weight_;
   }
 
 private:
   using TermsT = Terms<B, BASIS>;
   // With other constraints pivots that are raised are a rare thing.
   static constexpr bool RAISES_MATTER = CONSTRAINT == Constraint::FUNCTIONAL;
-
-  void
-  normalOf (std::size_t node, B *n) const
-  {
-    n[0] = B (nodes_.nx[node]);
-    n[1] = B (nodes_.ny[node]);
-    n[2] = B (nodes_.nz[node]);
-  }
-
-  /** \brief w(t) Δx_i; zero beyond the support. */
-  B
-  weightOf (std::size_t node, B *d, B &t) const
-  {
-    const B squared = support_.offset (node, d);
-    t = xsimd::min (xsimd::sqrt (squared) * scale_, B (1.0f));
-    const B weight = kernel_.weight (t);
-    return nodes_.confidence != nullptr ? weight * B (nodes_.confidence[node]) : weight;
-  }
 
   void
   sumMoments ()
@@ -165,12 +140,8 @@ private:
     for (std::size_t i = 0; i < count; ++i)
     {
       const std::size_t node = support_.node (i);
-      B d[3];
-      const B squared = support_.offset (node, d);
-      const B t = xsimd::min (xsimd::sqrt (squared) * scale_, B (1.0f));
-      B weight = kernel_.weight (t);
-      if (nodes_.confidence != nullptr)
-        weight *= B (nodes_.confidence[node]);
+      B d[3], squared, t;
+      const B weight = weights_.weight (node, d, squared, t);
       reach_.count (node, node < nodes_.on_surface, squared);
       addNode (node, weight, d, squared, sums);
     }
@@ -182,7 +153,7 @@ private:
   {
     B R[SIZE], n[3];
     TermsT::evaluate (d, squared, R);
-    normalOf (node, n);
+    weights_.normal (node, n);
     B weighted[SIZE];
     weighted[0] = weight;
     for (int j = 1; j < SIZE; ++j)
@@ -197,7 +168,7 @@ private:
       TermsT::addNormal (weight, d, n, sums.b);
     if (CONSTRAINT == Constraint::HERMITE && nodes_.lambda == nullptr)
       return;
-    B height (nodes_.lambda != nullptr ? nodes_.lambda[node] : 0.0f);
+    B height = weights_.lambda (node);
     if constexpr (CONSTRAINT == Constraint::FUNCTIONAL)
       height -= dot (d, n); // eq. (2)
     if constexpr (CONSTRAINT == Constraint::HERMITE)
@@ -227,17 +198,17 @@ private:
   void
   addResidual (std::size_t node, B *by_u, B &by_radius, B *direct)
   {
-    B d[3], t, n[3], R[SIZE];
-    const B weight = weightOf (node, d, t);
+    B d[3], squared, t, n[3], R[SIZE];
+    const B weight = weights_.weight (node, d, squared, t);
     for (int a = 0; a < 3; ++a)
       d[a] *= scale_;
     if constexpr (SIZE == 1)
       for (int a = 0; a < 3; ++a)
         centroid_[a] = xsimd::fma (weight / weight_, d[a], centroid_[a]);
-    normalOf (node, n);
+    weights_.normal (node, n);
     TermsT::evaluate (d, t * t, R);
     const B share = combine<TermsT> (a_, R);
-    B height = B (nodes_.lambda != nullptr ? nodes_.lambda[node] : 0.0f) * scale_;
+    B height = weights_.lambda (node) * scale_;
     if constexpr (CONSTRAINT == Constraint::FUNCTIONAL)
       height -= dot (d, n);
     B residual = share * (height - combine<TermsT> (c_, R));
@@ -252,10 +223,7 @@ private:
       residual += of_gradients;
       by_radius = xsimd::fma (weight, of_gradients, by_radius);
     }
-    B slope = kernel_.slope (t);
-    if (nodes_.confidence != nullptr)
-      slope *= B (nodes_.confidence[node]);
-    const B force = slope * residual;
+    const B force = weights_.slope (node, t) * residual;
     by_radius = xsimd::fnma (B (0.5f) * t * t, force, by_radius);
     for (int a = 0; a < 3; ++a)
       by_u[a] = xsimd::fma (force, d[a], by_u[a]);
@@ -307,11 +275,9 @@ private:
     for (std::size_t i = 0; i < support_.size (); ++i)
     {
       const std::size_t node = support_.node (i);
-      B d[3], t, R[SIZE];
-      weightOf (node, d, t);
-      B slope = kernel_.slope (t);
-      if (nodes_.confidence != nullptr)
-        slope *= B (nodes_.confidence[node]);
+      B d[3], squared, t, R[SIZE];
+      weights_.weight (node, d, squared, t);
+      const B slope = weights_.slope (node, t);
       B change[3], away (0.0f);
       for (int a = 0; a < 3; ++a)
       {
@@ -334,7 +300,7 @@ private:
 
   const Nodes &nodes_;
   const LaneSupport<B> &support_;
-  KernelT<B> kernel_;
+  LaneWeights<B, KernelT> weights_;
   B scale_;
   LaneReach<B> reach_;
   LaneSystem<TermsT, B> system_;
