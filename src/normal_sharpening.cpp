@@ -2,13 +2,11 @@
 #include "normal_sharpening.h"
 
 #include "node_table.h"
+#include "normal_sharpener.h"
 #include "normal_smoothing.h"
 #include "threads.h"
 
-#include <Eigen/Geometry>
-
 #include <algorithm>
-#include <cmath>
 #include <map>
 #include <utility>
 
@@ -17,271 +15,6 @@ namespace erkpa
 
 namespace
 {
-
-constexpr std::size_t FEWEST = 6;         // points of a plane
-constexpr std::size_t FOR_A_QUADRIC = 10; // points: its six terms leave enough to tell whether it fits
-
-/** \brief The neighbours of a point that may share a face with it, nearest first, with weights for a fit. */
-struct Neighborhood
-{
-  std::vector<int> nodes;
-  std::vector<Eigen::Vector3f> positions;
-  std::vector<float> weights;
-
-  // of the query
-  std::vector<int> indices;
-  std::vector<float> squared_distances;
-  std::vector<std::pair<float, int>> order;
-};
-
-double
-angleBetween (const Eigen::Vector3f &a, const Eigen::Vector3f &b)
-{
-  return std::atan2 (a.cross (b).norm (), a.dot (b));
-}
-
-class Sharpener
-{
-public:
-  Sharpener (const NeighborSearch &search, const NormalScale &scale, int threads, const OrientedPoints &points)
-      : search_ (search), spacing_ (scale.spacing), threads_ (threads), points_ (points),
-        tolerance_ (scale.noise + 0.01 * scale.spacing),
-        k_ (static_cast<int> (scale.k * (1.0 + std::min (0.5, 5.0 * scale.noise / scale.spacing))))
-  {
-  }
-
-  /** \brief The new normals. */
-  std::vector<Eigen::Vector3f>
-  run ()
-  {
-    fits_.assign (points_.size (), HeightFit ());
-    smooth_.assign (points_.size (), 1);
-    forEachPoint ([this] (Neighborhood &near, std::size_t i) { fitAround (near, i); });
-    chosen_ = fits_;
-    forEachPoint ([this] (Neighborhood &near, std::size_t i) { choose (near, i); });
-    takeNormals ();
-    constexpr int ROUNDS = 2;
-    for (int round = 0; round < ROUNDS; ++round)
-    {
-      forEachPoint ([this] (Neighborhood &near, std::size_t i) { refine (near, i, true); });
-      takeNormals ();
-    }
-    return normals_;
-  }
-
-  /** \brief How far the neighbours of a point are from a smooth surface, in tolerances; 0 where they make one. */
-  double
-  roughness (Neighborhood &near, std::size_t i) const
-  {
-    gather (near, i, k_);
-    if (near.nodes.size () < FEWEST)
-      return 0.0;
-    const HeightFit fit = fitAll (near, i);
-    return isSmooth (fit) ? 0.0 : fit.deviation () / tolerance_;
-  }
-
-  /** \brief After run(): how far the given normal of a point leans to the other face of an edge it is close to.
-   *
-   * As a share of the angle between the faces; negative if it leans away. Zero and \a known false far from edges.
-   */
-  double
-  leanOf (Neighborhood &near, std::size_t i, bool &known) const
-  {
-    constexpr int CLOSE = 6;
-    constexpr double SHARP = 0.5; // radians
-    gather (near, i, CLOSE);
-    double sharpest = SHARP, lean = 0.0;
-    known = false;
-    for (const int j : near.nodes)
-    {
-      const Eigen::Vector3f &own = normals_[i], &other = normals_[static_cast<std::size_t> (j)];
-      const double angle = angleBetween (own, other);
-      if (smooth_[i] || !(angle > sharpest))
-        continue;
-      const Eigen::Vector3f to_other = (other - own.dot (other) * own).normalized ();
-      const Eigen::Vector3f &given = points_.normals[i];
-      lean = std::atan2 (given.dot (to_other), given.dot (own)) / angle;
-      sharpest = angle;
-      known = true;
-    }
-    return lean;
-  }
-
-  template <typename WorkT>
-  void
-  forEachPoint (WorkT work)
-  {
-    parallelFor (
-        points_.size (), threads_, [] { return Neighborhood (); }, work);
-  }
-
-private:
-  void
-  gather (Neighborhood &near, std::size_t i, int k) const
-  {
-    constexpr float OPPOSITE = -0.3f; // cosine: the other side of a thin plate, even if smeared over its rim
-    search_.nearestK (points_.positions[i], k, near.indices, near.squared_distances);
-    near.order.clear ();
-    for (std::size_t j = 0; j < near.indices.size (); ++j)
-      near.order.emplace_back (near.squared_distances[j], near.indices[j]);
-    std::sort (near.order.begin (), near.order.end ());
-    near.nodes.clear ();
-    near.positions.clear ();
-    for (const auto &[squared_distance, j] : near.order)
-    {
-      const auto node = static_cast<std::size_t> (j);
-      if (points_.normals[node].dot (points_.normals[i]) < OPPOSITE)
-        continue;
-      near.nodes.push_back (j);
-      near.positions.push_back (points_.positions[node]);
-    }
-    near.weights.assign (near.nodes.size (), 1.0f);
-  }
-
-  /** \brief Below the tolerance one deviation is as good as the other. */
-  double
-  atLeastTolerance (double deviation) const
-  {
-    return std::max (tolerance_, std::abs (deviation));
-  }
-
-  HeightFit
-  fitAll (const Neighborhood &near, std::size_t i) const
-  {
-    return {near.positions, near.weights, points_.normals[i],
-            spacing_,       tolerance_,   near.nodes.size () >= FOR_A_QUADRIC};
-  }
-
-  bool
-  isSmooth (const HeightFit &fit) const
-  {
-    return fit.deviation () < 1.1 * tolerance_;
-  }
-
-  /** \brief The fit of a point's neighbours: of all of them where that is a smooth surface, else of fewer if better. */
-  void
-  fitAround (Neighborhood &near, std::size_t i)
-  {
-    gather (near, i, k_);
-    if (near.nodes.size () < FEWEST)
-      return; // keeps its normal
-    const Eigen::Vector3f &side = points_.normals[i];
-    HeightFit &best = fits_[i];
-    best = fitAll (near, i);
-    smooth_[i] = isSmooth (best);
-    for (const double share : {0.6, 0.4})
-    {
-      const auto fewer = static_cast<std::size_t> (share * k_);
-      if (smooth_[i] || fewer < FEWEST || fewer >= near.nodes.size ())
-        continue;
-      near.positions.resize (fewer);
-      near.weights.assign (fewer, 1.0f);
-      near.nodes.resize (fewer);
-      for (const bool curved : {true, false})
-      {
-        if (curved && fewer < FOR_A_QUADRIC + 2)
-          continue;
-        const HeightFit fit (near.positions, near.weights, side, spacing_, tolerance_, curved);
-        if (atLeastTolerance (fit.deviation ()) < 0.8 * atLeastTolerance (best.deviation ()))
-          best = fit;
-      }
-    }
-  }
-
-  /** \brief Of the fits around a point that is not on a smooth surface, the one that explains it best. */
-  void
-  choose (Neighborhood &near, std::size_t i)
-  {
-    if (smooth_[i])
-      return;
-    gather (near, i, k_ + k_ / 2);
-    const Eigen::Vector3f &x = points_.positions[i];
-    double least = HUGE_VAL;
-    for (const int j : near.nodes)
-    {
-      const HeightFit &fit = fits_[static_cast<std::size_t> (j)];
-      if (!(fit.weight () > 0.0))
-        continue;
-      const double deviation = atLeastTolerance (fit.deviation ()), distance = atLeastTolerance (fit.distance (x));
-      const double reach = (x - fit.center ()).squaredNorm () / (spacing_ * spacing_);
-      // The last two factors decide between equals: the closer one, and the one over more points.
-      const double misfit =
-          (deviation * deviation + distance * distance) * (1.0 + 0.01 * reach) * (1.0 + 10.0 / fit.weight ());
-      if (misfit < least)
-        chosen_[i] = fit;
-      least = std::min (least, misfit);
-    }
-    refine (near, i, false);
-  }
-
-  /** \brief Fits the chosen surface again, to the neighbours on it. */
-  void
-  refine (Neighborhood &near, std::size_t i, bool by_normals)
-  {
-    constexpr int TURNS = 2;
-    if (smooth_[i])
-      return;
-    gather (near, i, k_ + k_ / 2);
-    const Eigen::Vector3f &x = points_.positions[i];
-    for (int turn = 0; turn < TURNS; ++turn)
-    {
-      const HeightFit &before = chosen_[i];
-      const std::size_t on_it = weigh (near, before, by_normals);
-      if (on_it < FEWEST)
-        return;
-      const HeightFit fit (near.positions, near.weights, before.normal (x), spacing_, tolerance_,
-                           on_it >= FOR_A_QUADRIC);
-      const double deviation = atLeastTolerance (fit.deviation ());
-      if (std::abs (fit.distance (x)) > 3.0 * deviation || deviation > 1.2 * atLeastTolerance (before.deviation ()))
-        return;
-      chosen_[i] = fit;
-    }
-  }
-
-  /** \brief Weights of neighbours by their distance from a surface, and by their normals' angle with it if asked for.
-   * \return how many lie on the surface
-   */
-  std::size_t
-  weigh (Neighborhood &near, const HeightFit &surface, bool by_normals) const
-  {
-    constexpr float ANGLE = 0.18f; // radians
-    const double sigma = 1.5 * atLeastTolerance (surface.deviation ());
-    std::size_t on_it = 0;
-    for (std::size_t j = 0; j < near.nodes.size (); ++j)
-    {
-      double squares = std::pow (surface.distance (near.positions[j]) / sigma, 2);
-      if (by_normals)
-        squares +=
-            (surface.normal (near.positions[j]) - normals_[static_cast<std::size_t> (near.nodes[j])]).squaredNorm () /
-            (ANGLE * ANGLE);
-      near.weights[j] = squares < 9.0 ? static_cast<float> (std::exp (-0.5 * squares)) : 0.0f;
-      on_it += near.weights[j] > 0.3f;
-    }
-    return on_it;
-  }
-
-  void
-  takeNormals ()
-  {
-    normals_ = points_.normals;
-    for (std::size_t i = 0; i < points_.size (); ++i)
-    {
-      const Eigen::Vector3f normal = chosen_[i].normal (points_.positions[i]);
-      if (chosen_[i].weight () > 0.0 && normal.allFinite ())
-        normals_[i] = normal;
-    }
-  }
-
-  const NeighborSearch &search_;
-  const double spacing_;
-  const int threads_;
-  const OrientedPoints &points_;
-  const double tolerance_;               // of what counts as lying on a surface, input's unit of length
-  const int k_;                          // neighbours of a fit
-  std::vector<HeightFit> fits_, chosen_; // of each point: around it, and that it lies on; no weight where unknown
-  std::vector<char> smooth_;             // whether the former is the latter
-  std::vector<Eigen::Vector3f> normals_; // new ones
-};
 
 /** \brief Pieces of a cloud around points that are on no smooth surface. */
 struct RoughPieces
@@ -295,7 +28,7 @@ std::vector<std::size_t>
 findRough (const NeighborSearch &search, const NormalScale &scale, int threads, const OrientedPoints &points)
 {
   const std::vector<std::size_t> sample = spreadSample (points.size ());
-  const Sharpener sharpener (search, scale, threads, points);
+  const NormalSharpener sharpener (search, scale, threads, points);
   std::vector<std::pair<double, std::size_t>> roughness (sample.size ());
   parallelFor (
       sample.size (), threads, [] { return Neighborhood (); },
@@ -347,7 +80,7 @@ gatherPieces (const NeighborSearch &search, const OrientedPoints &points, const 
 void
 sharpenNormals (const NeighborSearch &search, const NormalScale &scale, int threads, OrientedPoints &points)
 {
-  Sharpener sharpener (search, scale, threads, points);
+  NormalSharpener sharpener (search, scale, threads, points);
   points.normals = sharpener.run ();
 }
 
@@ -362,7 +95,7 @@ areNormalsSmeared (const NeighborSearch &search, const NormalScale &scale, int t
     return false;
   const RoughPieces pieces = gatherPieces (search, points, rough, scale.k);
   const NeighborSearch::ConstPtr search_in_pieces = makeGridSearch (pieces.points.positions, threads);
-  Sharpener sharpener (*search_in_pieces, scale, threads, pieces.points);
+  NormalSharpener sharpener (*search_in_pieces, scale, threads, pieces.points);
   sharpener.run ();
   std::vector<double> leans;
   Neighborhood near;
