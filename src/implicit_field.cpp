@@ -60,12 +60,12 @@ ImplicitField::ImplicitField (std::shared_ptr<const OrientedPoints> points, Neig
   double spacing = 0.0;
   const std::shared_ptr<const PointGrid> grid = makePointGrid (points_->positions, threads, spacing);
   grid_search_ = makeGridSearch (grid);
-  const int k = chooseSupportSize (*points_, *grid_search_);
+  const int k = chooseSupportSize (*points_, *grid_search_, threads);
   if (options_.k == 0 && SupportSize::kindOf (*points_, options_) == SupportSize::Kind::NEAREST)
     options_.k = k;
   support_size_ = std::make_shared<const SupportSize> (*points_, options_, spacing);
   warpPositions ();
-  spacing_ = options_.warp ? measureSpacing (warped_positions_, *warped_search_) : spacing;
+  spacing_ = options_.warp ? measureSpacing (warped_positions_, *warped_search_, threads) : spacing;
   typical_radius_ = support_size_->typical () * (options_.warp && spacing > 0.0 ? spacing_ / spacing : 1.0);
   feature_size_ = spacing_ * std::sqrt (static_cast<double> (k) / CLEAN_SUPPORT);
   for (std::size_t i = 0; i < options_.sharp_surfaces.size (); ++i)

@@ -57,7 +57,7 @@ makePointGrid (const std::vector<Eigen::Vector3f> &positions, int threads, doubl
   constexpr double CELL = 2.5, WIDE = 1.6; // spacings: the support of clean points; how far off does no harm
   const double guess = guessSpacing (positions);
   auto grid = std::make_shared<const PointGrid> (positions, CELL * guess, threads);
-  spacing = measureSpacing (positions, *makeGridSearch (grid));
+  spacing = measureSpacing (positions, *makeGridSearch (grid), threads);
   if (spacing > 0.0 && std::abs (std::log (spacing / guess)) > std::log (WIDE))
     grid = std::make_shared<const PointGrid> (positions, CELL * spacing, threads);
   return grid;

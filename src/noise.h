@@ -14,15 +14,15 @@ constexpr int CLEAN_SUPPORT = 20;
 
 /** \brief The side of the square that a node has to itself: median over the nodes, from the 8 nearest of each. */
 double
-measureSpacing (const std::vector<Eigen::Vector3f> &positions, const NeighborSearch &search);
+measureSpacing (const std::vector<Eigen::Vector3f> &positions, const NeighborSearch &search, int threads);
 
 /** \brief How many neighbours it takes to average the noise out.
  *
  * The noise is the thickness of small neighbourhoods: the standard deviation of the 10 nearest nodes along their
  * thinnest direction. A fit to k nodes within r tilts by about noise / (r sqrt k). Takes the smallest k, from
- * CLEAN_SUPPORT on, for which this is below 0.01 in the median.
+ * CLEAN_SUPPORT on, for which this is below 0.01 in the median. It does not depend on the number of threads.
  */
 int
-chooseSupportSize (const OrientedPoints &points, const NeighborSearch &search);
+chooseSupportSize (const OrientedPoints &points, const NeighborSearch &search, int threads);
 
 } // namespace erkpa

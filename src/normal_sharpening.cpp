@@ -7,6 +7,7 @@
 #include "threads.h"
 
 #include <algorithm>
+#include <atomic>
 #include <map>
 #include <utility>
 
@@ -43,6 +44,30 @@ findRough (const NeighborSearch &search, const NormalScale &scale, int threads, 
     rough.push_back (r->second);
   std::sort (rough.begin (), rough.end ());
   return rough;
+}
+
+/** \brief Whether some of the points at edges have neighbours with normals half way between faces.
+ *
+ * Of smeared normals most have (0.7 and more), of exact ones few: a quick answer for these.
+ */
+bool
+areBlended (const NeighborSearch &search, const NormalScale &scale, int threads, const OrientedPoints &points,
+            const std::vector<std::size_t> &rough)
+{
+  constexpr std::size_t ENOUGH = 300;
+  constexpr int SHARE = 4;
+  const std::size_t step = rough.size () / ENOUGH + 1;
+  const NormalSharpener sharpener (search, scale, threads, points);
+  std::atomic<int> at_edges{0}, blended{0};
+  parallelFor (
+      (rough.size () + step - 1) / step, threads, [] { return Neighborhood (); },
+      [&] (Neighborhood &near, std::size_t r)
+      {
+        bool is_at_edge = false;
+        blended += sharpener.isBlended (near, rough[r * step], is_at_edge) ? 1 : 0;
+        at_edges += is_at_edge ? 1 : 0;
+      });
+  return SHARE * blended > at_edges;
 }
 
 RoughPieces
@@ -91,7 +116,7 @@ areNormalsSmeared (const NeighborSearch &search, const NormalScale &scale, int t
   // Of PCA at edges, 0.25 to 0.35 and more with noise; of exact normals 0, but 0.3 where much noise feigns edges.
   const double smeared = std::min (0.38, 0.2 + 0.6 * scale.noise / scale.spacing);
   const std::vector<std::size_t> rough = findRough (search, scale, threads, points);
-  if (rough.empty ())
+  if (rough.empty () || !areBlended (search, scale, threads, points, rough))
     return false;
   const RoughPieces pieces = gatherPieces (search, points, rough, scale.k);
   const NeighborSearch::ConstPtr search_in_pieces = makeGridSearch (pieces.points.positions, threads);

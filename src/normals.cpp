@@ -48,7 +48,7 @@ estimateNormals (OrientedPoints &points, const NeighborSearch &search, const Nor
 {
   if (options.k != 0 && options.k < 3)
     return {Status::INVALID_SETTING, "normals need at least 3 neighbours, or 0 for automatic"};
-  const int k = options.k > 0 ? options.k : chooseSupportSize (points, search);
+  const int k = options.k > 0 ? options.k : chooseSupportSize (points, search, options.threads);
   const Eigen::Vector3f view_point = (options.view_point - points.origin).cast<float> ();
   std::vector<Eigen::Vector3f> estimated = fitPlanes (points, k, view_point, options.threads);
   for (std::size_t i = 0; i < points.size (); ++i)
@@ -70,16 +70,19 @@ refineNormals (const NeighborSearch &search, bool estimated, int threads, Orient
   constexpr double NOISY_POSITION = 0.1; // spacings
   constexpr int PASSES = 3, NEIGHBORS = 24;
   constexpr double SIGMA = 25.0; // degrees
-  const int k = chooseSupportSize (points, search);
-  const double spacing = measureSpacing (points.positions, search);
+  const int k = chooseSupportSize (points, search, threads);
+  const double spacing = measureSpacing (points.positions, search, threads);
   RefinedNormals refined;
   if (!(spacing > 0.0))
     return refined;
-  const NormalScale scale{spacing, positionNoise (search, spacing, threads, points), k};
+  NormalScale scale{spacing, positionNoise (search, spacing, threads, points), k};
   refined.sharpened = estimated || areNormalsSmeared (search, scale, threads, points);
   if (refined.sharpened)
+  {
     sharpenNormals (search, scale, threads, points);
-  refined.smoothed = positionNoise (search, spacing, threads, points) > NOISY_POSITION * spacing ||
+    scale.noise = positionNoise (search, spacing, threads, points); // it is measured apart from other faces' points
+  }
+  refined.smoothed = scale.noise > NOISY_POSITION * spacing ||
                      (!refined.sharpened && normalNoise (search, spacing, threads, points) > NOISY);
   if (refined.smoothed)
     smoothNormals (search, spacing, PASSES, NEIGHBORS, SIGMA, threads, points);

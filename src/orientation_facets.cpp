@@ -26,7 +26,7 @@ public:
   FacetFinder (const OrientedPoints &points, const NeighborSearch &search, SurfaceKind kind, int k, int threads,
                const std::vector<Eigen::Vector3f> &normals)
       : points_ (points), search_ (search), kind_ (kind), k_ (k), threads_ (threads), normals_ (normals),
-        spacing_ (measureSpacing (points.positions, search))
+        spacing_ (measureSpacing (points.positions, search, threads))
   {
     if (!(spacing_ > 0.0))
       return; // points that lie upon each other

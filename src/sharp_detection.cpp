@@ -77,7 +77,7 @@ SegmentationOptions
 optionsFor (const OrientedPoints &points, const NeighborSearch &search, double angle, int k, int threads)
 {
   SegmentationOptions options;
-  options.spacing = measureSpacing (points.positions, search);
+  options.spacing = measureSpacing (points.positions, search, threads);
   options.angle = angle * DEGREES;
   options.separation_reach = options.spacing * std::sqrt (k / M_PI);
   if (k <= CLEAN_SUPPORT)
@@ -283,7 +283,7 @@ findSharpSurfaces (const OrientedPoints &points, const NeighborSearch &search, c
   if (!(options.angle >= 5.0 && options.angle <= 90.0))
     return {Status::INVALID_SETTING,
             "the angle of sharp edges is " + toText (options.angle) + " degrees: use one of 5 to 90"};
-  const int k = chooseSupportSize (points, search);
+  const int k = chooseSupportSize (points, search, threads);
   const SegmentationOptions segmentation = optionsFor (points, search, options.angle, k, threads);
   const FaceSegmentation found = segmentFaces (points, search, segmentation, threads);
   const std::vector<Stretch> stretches = gatherStretches (points, search, found, segmentation, k, threads);

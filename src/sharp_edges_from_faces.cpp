@@ -82,10 +82,10 @@ private:
 EdgeFinder::EdgeFinder (const OrientedPoints &points, double tolerance) : points_ (points)
 {
   const NeighborSearch::ConstPtr search = makeGridSearch (points.positions, 1);
-  spacing_ = measureSpacing (points.positions, *search);
+  spacing_ = measureSpacing (points.positions, *search, 1);
   tolerance_ = tolerance > 0.0 ? tolerance : 0.5 * spacing_;
   near_ = NEAR * spacing_ + tolerance_;
-  support_ = spacing_ * std::sqrt (chooseSupportSize (points, *search) / M_PI);
+  support_ = spacing_ * std::sqrt (chooseSupportSize (points, *search, 1) / M_PI);
 }
 
 void

@@ -20,7 +20,7 @@ struct Estimated
 {
   explicit Estimated (const shapes::Samples &samples, double noise = 0.0)
       : truth (samples.normals), points (*shapes::points (samples)),
-        spacing (erkpa::measureSpacing (points.positions, *erkpa::makeKdTreeSearch (points.positions)))
+        spacing (erkpa::measureSpacing (points.positions, *erkpa::makeKdTreeSearch (points.positions), 1))
   {
     std::mt19937 random (4);
     std::normal_distribution<float> normal (0.0f, 1.0f);

@@ -4,6 +4,7 @@
 #include "command_line.h"
 #include "run.h"
 
+#include <erkpa/large_pages.h>
 #include <erkpa/version.h>
 
 #include <pcl/console/print.h>
@@ -46,6 +47,7 @@ fail (const char *message)
 int
 main (int argc, char **argv)
 {
+  erkpa::preferLargePages ();
   try
   {
     erkpa::tool::runCommandLine (argc, argv);
