@@ -35,6 +35,7 @@ BlockEnrichment::BlockEnrichment (const ImplicitField &field, double unit)
     const SpaceWarp *warp = nullptr;
     is_plane_.push_back (planeBehind (*surface, &warp) != nullptr && warp == nullptr ? 1 : 0);
     is_handled_.push_back (can_evaluate_ && isPlainModel (*surface) ? 1 : 0);
+    planes_.push_back (surface->parts ().plane);
   }
 }
 
@@ -88,12 +89,17 @@ BlockEnrichment::run (const lanes::Engine &engine, const lanes::Settings &settin
       break;
     Values &values = values_[used_++];
     values.surface = near.surface;
-    evaluateAtNodes (nodes, values);
+    const SharpPlane *plane = planes_[static_cast<std::size_t> (near.surface)];
+    if (plane != nullptr)
+      evaluatePlaneAtNodes (*plane, nodes, values);
+    else
+      evaluateAtNodes (nodes, values);
     evaluateAtPoints (places, values);
   }
-  const lanes::SharpSurfaces sharp = view ();
+  lanes::SharpSurfaces sharp = view ();
+  const bool has_all = listPencils (sharp) && wanted <= values_.size ();
   points.run (engine, settings, nodes.view (settings.gradients), false, &sharp);
-  if (wanted > values_.size ())
+  if (!has_all)
     std::fill_n (points.states.begin (), points.size (), lanes::State::UNSETTLED);
 }
 
@@ -106,15 +112,28 @@ BlockEnrichment::evaluateAtNodes (const BlockNodes &nodes, Values &values) const
   const SharpSurface &sharp = surface (values.surface);
   for (std::size_t i = 0; i < nodes.count (); ++i)
   {
-    const Eigen::Vector3d position =
-        field_.points ().positions[static_cast<std::size_t> (nodes.node (i))].cast<double> () + field_.points ().origin;
     double theta = 0.0;
     Eigen::Vector3d gradient;
-    sharp.evaluate (position, theta, gradient);
+    sharp.evaluate (nodes.position (i).cast<double> () + field_.points ().origin, theta, gradient);
     values.theta[i] = static_cast<float> (theta * inverse_unit_);
     for (std::size_t a = 0; a < 3; ++a)
       values.gradient[a][i] = static_cast<float> (gradient[static_cast<Eigen::Index> (a)]);
   }
+}
+
+/** \brief The same for the most frequent of surfaces; its θ is that of every other place that asks for it, to the last
+ * bit: nodes on it are on one side of it for all blocks. */
+void
+BlockEnrichment::evaluatePlaneAtNodes (const SharpPlane &plane, const BlockNodes &nodes, Values &values) const
+{
+  const Eigen::Vector3d &origin = field_.points ().origin;
+  const Eigen::Vector3f gradient = plane.SharpPlane::thetaGradient (origin).cast<float> ();
+  values.theta.resize (nodes.count ());
+  for (std::size_t i = 0; i < nodes.count (); ++i)
+    values.theta[i] = static_cast<float> (
+        plane.SharpPlane::theta (nodes.position (i).cast<double> () + origin) * inverse_unit_);
+  for (std::size_t a = 0; a < 3; ++a)
+    values.gradient[a].assign (nodes.count (), gradient[static_cast<Eigen::Index> (a)]);
 }
 
 /** \brief The last vector is filled up with the last point. */
@@ -157,11 +176,11 @@ BlockEnrichment::view () const
     seen.reversible = is_plane_[static_cast<std::size_t> (values.surface)] != 0;
     seen.squared = true;
   }
-  listPencils (sharp);
   return sharp;
 }
 
-void
+/** \brief False where there are too many. */
+bool
 BlockEnrichment::listPencils (lanes::SharpSurfaces &sharp) const
 {
   const auto place_of = [this] (int surface)
@@ -173,12 +192,15 @@ BlockEnrichment::listPencils (lanes::SharpSurfaces &sharp) const
   };
   for (const Pencil &pencil : field_.pencils ())
   {
-    std::array<int, 3> places;
-    std::transform (pencil.surfaces.begin (), pencil.surfaces.end (), places.begin (), place_of);
-    if (used_ < 3 || *std::min_element (places.begin (), places.end ()) < 0)
+    const int a = place_of (pencil.surfaces[0]), b = place_of (pencil.surfaces[1]), c = place_of (pencil.surfaces[2]);
+    if (a < 0 || b < 0 || c < 0)
       continue;
-    std::copy (places.begin (), places.end (), sharp.pencils[sharp.pencil_count++]);
+    if (sharp.pencil_count == lanes::SharpSurfaces::MAX_PENCILS)
+      return false;
+    sharp.pencils[sharp.pencil_count++] = {
+        {a, b, c}, static_cast<float> (pencil.scale_a), static_cast<float> (pencil.scale_b)};
   }
+  return true;
 }
 
 std::uint64_t

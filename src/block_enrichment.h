@@ -19,8 +19,8 @@ namespace erkpa
 /** \brief The sharp surfaces that enrich the field at points of one ball, as the lanes see them: Enrichment's quick
  * double.
  *
- * Kinks at models that are in force everywhere, for the Hermite constraint. Corners, where three surfaces meet, are
- * left to LocalField, and so is what is limited, warped or a function.
+ * Kinks at models that are in force everywhere and their corners, for the Hermite constraint. What is limited, warped
+ * or a function is left to LocalField.
  */
 class BlockEnrichment
 {
@@ -84,18 +84,22 @@ private:
   evaluateAtNodes (const BlockNodes &nodes, Values &values) const;
 
   void
+  evaluatePlaneAtNodes (const SharpPlane &plane, const BlockNodes &nodes, Values &values) const;
+
+  void
   evaluateAtPoints (const std::vector<Eigen::Vector3d> &places, Values &values) const;
 
   lanes::SharpSurfaces
   view () const;
 
-  void
+  bool
   listPencils (lanes::SharpSurfaces &sharp) const;
 
   const ImplicitField &field_;
   double inverse_unit_;
   bool can_evaluate_;
   std::vector<char> is_handled_, is_plane_; // per surface of the field
+  std::vector<const SharpPlane *> planes_;  // the surface itself, where it is one
   std::vector<Near> near_;
   std::size_t used_ = 0; // of values_, whose memory is kept
   std::array<Values, lanes::MAX_SURFACES> values_;

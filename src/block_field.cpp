@@ -126,8 +126,8 @@ BlockField::gather (const Eigen::Vector3d &center, double extent)
   if (!findReach (center_, all))
     return false;
   has_separations_ = faces_.gather (center_, all);
-  if (!field_.enrichingSurfaces ().empty () || field_.faces () != nullptr)
-    gatherSharpSurfaces (all);
+  const bool by_nearest = field_.supportSize ().kind () == SupportSize::Kind::NEAREST;
+  enrichment_.gather (center_, (by_nearest ? center_radius_ + 2.0 * all : reach_) + field_.largestOffset ());
   nodes_.copy ();
   return true;
 }
@@ -165,20 +165,6 @@ BlockField::findNodes (const Eigen::Vector3d &center, double reach)
 {
   reach_ = reach;
   nodes_.find (center, reach);
-}
-
-/** \brief Which sharp surfaces are in reach decides how points are evaluated: it must not depend on the balls before,
- * from which the bound of the radius is guessed. */
-void
-BlockField::gatherSharpSurfaces (double extent)
-{
-  double reach = reach_;
-  if (field_.supportSize ().kind () == SupportSize::Kind::NEAREST)
-  {
-    center_radius_ = nodes_.distanceOfKth (static_cast<std::size_t> (settings_.k));
-    reach = center_radius_ + 2.0 * extent;
-  }
-  enrichment_.gather (center_, reach + field_.largestOffset ());
 }
 
 double

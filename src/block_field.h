@@ -162,9 +162,6 @@ private:
   void
   findNodes (const Eigen::Vector3d &center, double reach);
 
-  void
-  gatherSharpSurfaces (double extent);
-
   /** \brief How far the support of a point goes, at most. */
   double
   reachAt (const Eigen::Vector3d &x) const;

@@ -46,33 +46,26 @@ BlockNodes::find (const Eigen::Vector3d &center, double reach)
 double
 BlockNodes::boundOfKth (std::size_t k, double guess) const
 {
-  const auto count_within = [this] (double distance)
+  constexpr int PER_DOUBLING = 32;
+  const auto distance_at = [] (int step) { return std::exp2 (static_cast<double> (step) / PER_DOUBLING); };
+  const auto has_k = [&] (int step)
   {
+    const double distance = distance_at (step);
     const auto squared = static_cast<float> (distance * distance);
     int count = 0;
     for (std::size_t i = 0; i < count_; ++i)
       count += squared_[i] <= squared ? 1 : 0;
-    return static_cast<std::size_t> (count);
+    return static_cast<std::size_t> (count) >= k;
   };
-  constexpr int STEPS = 5;
-  double low = 0.0, high = guess;
-  if (count_within (guess) < k)
+  int high = static_cast<int> (std::floor (std::log2 (guess) * PER_DOUBLING)), wide = PER_DOUBLING / 4; // most guesses are good
+  if (!has_k (high))
     return HUGE_VAL;
-  for (int step = 0; step < STEPS; ++step)
-  {
-    const double middle = 0.5 * (std::max (low, 0.5 * high) + high);
-    (count_within (middle) < k ? low : high) = middle;
-  }
-  return high;
-}
-
-double
-BlockNodes::distanceOfKth (std::size_t k)
-{
-  sorted_.assign (squared_.begin (), squared_.begin () + static_cast<std::ptrdiff_t> (count_));
-  const auto kth = sorted_.begin () + static_cast<std::ptrdiff_t> (k - 1);
-  std::nth_element (sorted_.begin (), kth, sorted_.end ());
-  return std::sqrt (static_cast<double> (*kth));
+  int low = high - wide;
+  for (; distance_at (low) > 0.0 && has_k (low); low -= wide *= 2)
+    high = low;
+  while (high - low > 1)
+    (has_k (low + (high - low) / 2) ? high : low) = low + (high - low) / 2;
+  return distance_at (high);
 }
 
 void

@@ -60,17 +60,23 @@ public:
     return static_cast<int> (index_[places_[i]]);
   }
 
+  /** \brief Of a node, in the local frame. */
+  Eigen::Vector3f
+  position (std::size_t i) const
+  {
+    const std::uint32_t place = places_[i];
+    return {table_.grid->coordinates (0)[place], table_.grid->coordinates (1)[place],
+            table_.grid->coordinates (2)[place]};
+  }
+
   /** \brief A distance within which there are k of the nodes that were found, little more than that of the k-th.
    *
-   * The exact one is found for every point by itself; a few counts are quicker here than a selection.
-   * \param[in] guess a distance that may do; the result is larger where it does not
+   * The exact one is found for every point by itself; a few counts are quicker here than a selection. It is the least
+   * of fixed distances, so that it does not depend on the guess.
+   * \param[in] guess a distance within which all nodes were found, and which may do; HUGE_VAL where it does not
    */
   double
   boundOfKth (std::size_t k, double guess) const;
-
-  /** \brief The distance of the k-th of the nodes that were found; there are so many. */
-  double
-  distanceOfKth (std::size_t k);
 
   /** \brief Make the arrays; off-surface points come after the nodes. */
   void
@@ -113,7 +119,6 @@ private:
   std::size_t count_ = 0, value_points_ = 0;
   std::vector<std::uint32_t> places_; // in the table
   std::vector<float> squared_;        // distances from the center
-  std::vector<float> sorted_;         // the same, partly sorted
   std::array<std::vector<float>, 3> positions_, normals_;
   std::vector<float> lambdas_, confidences_, attributes_;
 };

@@ -141,9 +141,10 @@ meshCells (const SparseGrid &grid, const std::vector<GridPoint> &cells, int thre
         border[i].swap (part.border);
       });
   CellMesh mesh;
-  mesh.triangles = joinParts (std::move (triangles), threads);
   mesh.centered_loops = joinParts (std::move (centered), threads);
   mesh.mixed_loops = joinParts (std::move (mixed), threads);
+  constexpr double SPARE = 0.15; // those of loops that are meshed later on
+  mesh.triangles = joinParts (std::move (triangles), threads, mesh.mixed_loops.empty () ? 0.0 : SPARE);
   mesh.border = joinParts (std::move (border), threads);
   return mesh;
 }

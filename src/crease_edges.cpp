@@ -2,6 +2,7 @@
 #include "crease_edges.h"
 
 #include "mesh_intersections.h"
+#include "threads.h"
 
 #include <Eigen/Geometry>
 
@@ -25,7 +26,8 @@ public:
   CreaseBuilder (double voxel, const std::vector<CellLoop> &loops, const std::vector<MeshedLoop> &meshed, int threads,
                  std::vector<Triangle> &triangles, SurfaceVertices &vertices)
       : voxel_ (voxel), threads_ (threads), loops_ (loops), meshed_ (meshed), triangles_ (triangles),
-        vertices_ (vertices), centers_ (loops.size (), -1), on_crease_ (loops.size (), 0)
+        vertices_ (vertices), before_loops_ (triangles.size ()), centers_ (loops.size (), -1),
+        on_crease_ (loops.size (), 0)
   {
   }
 
@@ -43,11 +45,12 @@ public:
     pairLoops ();
     sortVertices ();
     do
+    {
       while (dropFolded ())
         continue;
-    while (untangle ());
-    for (std::size_t i = 0; i < loops_.size (); ++i)
-      meshLoop (i);
+      meshLoops ();
+    } while (untangle ());
+    makeMiddles ();
     return {creases_.begin (), creases_.end ()};
   }
 
@@ -202,28 +205,28 @@ private:
   }
 
   /** \brief Undoes what brought triangles to pass through each other: vertices outside the cells they were found for.
-   * False where none do; vertices inside their cells cannot. */
+   * False where none do, which vertices inside their cells cannot; else the loops are to be meshed again. */
   bool
   untangle ()
   {
     if (loops_.empty () && vertices_.found.empty ())
       return false;
-    const Draft draft = makeDraft ();
-    std::vector<int> suspects;
+    const auto owner_of = [&] (std::size_t t) { return t < before_loops_ ? -1 : owners_[t - before_loops_]; };
     const auto is_outside = [this] (int v) { return isMoved (v) || isExtra (v); };
-    for (std::size_t t = 0; t < draft.triangles.size (); ++t)
-      if (draft.owners[t] >= 0 || std::any_of (draft.triangles[t].begin (), draft.triangles[t].end (), is_outside))
+    std::vector<int> suspects;
+    for (std::size_t t = vertices_.found.empty () ? before_loops_ : 0; t < triangles_.size (); ++t)
+      if (owner_of (t) >= 0 || std::any_of (triangles_[t].begin (), triangles_[t].end (), is_outside))
         suspects.push_back (static_cast<int> (t));
     std::set<int> touched; // one change in a place at a time: it may be enough
     const auto is_touched = [&touched] (int v) { return touched.count (v) > 0; };
-    for (const auto &[one, other] : findIntersections (draft.positions, draft.triangles, suspects, voxel_, threads_))
+    for (const auto &[one, other] : findIntersections (vertices_.positions, triangles_, suspects, voxel_, threads_))
     {
       const auto t = static_cast<std::size_t> (one), u = static_cast<std::size_t> (other);
-      const Triangle &first = draft.triangles[t], &second = draft.triangles[u];
+      const Triangle &first = triangles_[t], &second = triangles_[u];
       if (std::any_of (first.begin (), first.end (), is_touched) ||
           std::any_of (second.begin (), second.end (), is_touched))
         continue;
-      if (!giveUpCrease (draft.owners[t], draft.owners[u]) && !putBackFarthest (first, second))
+      if (!giveUpCrease (owner_of (t), owner_of (u)) && !putBackFarthest (first, second))
         continue;
       touched.insert (first.begin (), first.end ());
       touched.insert (second.begin (), second.end ());
@@ -231,37 +234,52 @@ private:
     return !touched.empty ();
   }
 
-  /** \brief The mesh as it would be. */
-  struct Draft
+  /** \brief Appends the triangles of all loops, and for now no more than the positions of vertices in their middles. */
+  void
+  meshLoops ()
   {
-    std::vector<Triangle> triangles;
-    std::vector<Eigen::Vector3d> positions; // with those of vertices that are to be made
-    std::vector<int> owners;                // per triangle the loop whose crease vertex it has; -1 for none
-  };
-
-  Draft
-  makeDraft () const
-  {
-    Draft draft{triangles_, vertices_.positions, std::vector<int> (triangles_.size (), -1)};
+    triangles_.resize (before_loops_);
+    vertices_.positions.resize (vertices_.normals.size ());
+    owners_.clear ();
+    with_middle_.clear ();
+    constexpr std::size_t STRETCH = 256;
+    std::vector<std::size_t> counts (loops_.size (), 0);
+    std::vector<std::vector<Triangle>> parts ((loops_.size () + STRETCH - 1) / STRETCH);
+    parallelFor (
+        parts.size (), threads_, [] { return 0; },
+        [&] (int, std::size_t p)
+        {
+          for (std::size_t i = p * STRETCH; i < std::min (loops_.size (), (p + 1) * STRETCH); ++i)
+          {
+            const std::size_t before = parts[p].size ();
+            if (on_crease_[i])
+              addCreaseFan (i, parts[p]);
+            else
+              triangulateCell (loops_[i], vertices_, parts[p]);
+            counts[i] = parts[p].size () - before;
+          }
+        });
+    for (const std::vector<Triangle> &part : parts)
+      triangles_.insert (triangles_.end (), part.begin (), part.end ());
     for (std::size_t i = 0; i < loops_.size (); ++i)
     {
-      if (on_crease_[i])
-        addCreaseFan (i, draft.triangles);
-      else if (!triangulateCell (loops_[i], vertices_, draft.triangles))
-      {
-        addFan (loops_[i].ring, static_cast<int> (draft.positions.size ()), draft.triangles);
-        draft.positions.push_back (middleOf (loops_[i].ring));
-      }
-      draft.owners.resize (draft.triangles.size (), on_crease_[i] ? static_cast<int> (i) : -1);
+      owners_.resize (owners_.size () + counts[i], on_crease_[i] ? static_cast<int> (i) : -1);
+      if (counts[i] == 0)
+        with_middle_.push_back (i);
     }
-    return draft;
+    for (const std::size_t i : with_middle_)
+    {
+      addFan (loops_[i].ring, static_cast<int> (vertices_.positions.size ()), triangles_);
+      vertices_.positions.push_back (middleOf (loops_[i].ring));
+    }
+    owners_.resize (triangles_.size () - before_loops_, -1);
   }
 
-  /** \brief Whether a vertex of a draft is still to be made. */
+  /** \brief Whether a vertex is there by its position only. */
   bool
   isExtra (int v) const
   {
-    return static_cast<std::size_t> (v) >= vertices_.positions.size ();
+    return static_cast<std::size_t> (v) >= vertices_.normals.size ();
   }
 
   /** \brief Whether a vertex of a thin wall was moved from the edge of the grid it was found on. */
@@ -314,15 +332,6 @@ private:
   }
 
   void
-  meshLoop (std::size_t loop)
-  {
-    if (on_crease_[loop])
-      addCreaseFan (loop, triangles_);
-    else if (!triangulateCell (loops_[loop], vertices_, triangles_))
-      addFan (loops_[loop].ring, appendMiddle (loop), triangles_);
-  }
-
-  void
   addCreaseFan (std::size_t loop, std::vector<Triangle> &triangles) const
   {
     const std::vector<int> &ring = loops_[loop].ring;
@@ -347,8 +356,16 @@ private:
     return middle;
   }
 
-  /** \brief A vertex in the middle of a loop that needs one. */
-  int
+  /** \brief What is missing of the vertices in the middle of loops. */
+  void
+  makeMiddles ()
+  {
+    vertices_.positions.resize (vertices_.normals.size ());
+    for (const std::size_t loop : with_middle_)
+      appendMiddle (loop);
+  }
+
+  void
   appendMiddle (std::size_t loop)
   {
     const std::vector<int> &ring = loops_[loop].ring;
@@ -364,7 +381,7 @@ private:
     middle.attributes.assign (from, from + static_cast<std::ptrdiff_t> (channels));
     middle.border_offset = vertices_.border_offsets[first];
     middle.face = vertices_.faces[first];
-    return appendVertex (middle);
+    appendVertex (middle);
   }
 
   double voxel_;
@@ -373,6 +390,9 @@ private:
   const std::vector<MeshedLoop> &meshed_;
   std::vector<Triangle> &triangles_;
   SurfaceVertices &vertices_;
+  const std::size_t before_loops_; // triangles
+  std::vector<int> owners_;        // per triangle of loops the one whose crease vertex it has; -1 for none
+  std::vector<std::size_t> with_middle_;
   std::vector<int> centers_;
   std::vector<char> on_crease_;
   std::map<VertexPair, std::vector<int>> crossings_; // the loops that a crossing is of

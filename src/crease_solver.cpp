@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "crease_solver.h"
 
-#include <Eigen/SVD>
+#include "plane_meeting.h"
+
+#include <cmath>
 
 namespace erkpa
 {
@@ -13,34 +15,31 @@ moveToCrease (LocalField &local, const std::vector<Side> &sides, double iso, dou
   constexpr int STEPS = 10;
   constexpr double PARALLEL = 0.05; // sine of about half the angle at which pieces count as one
   const Eigen::Vector3d start = x;
-  const auto count = static_cast<Eigen::Index> (sides.size ());
   if (gradients_there != nullptr)
     gradients_there->resize (sides.size ());
-  Eigen::MatrixXd gradients (count, 3);
-  Eigen::VectorXd values (count);
+  double squares = 0.0; // of the values
   for (int step = 0; step < STEPS; ++step)
   {
-    for (Eigen::Index i = 0; i < count; ++i)
+    PlaneMeeting meeting;
+    squares = 0.0;
+    for (std::size_t i = 0; i < sides.size (); ++i)
     {
-      const LocalSample sample = local.sampleOnSide (x, sides[static_cast<std::size_t> (i)]);
+      const LocalSample sample = local.sampleOnSide (x, sides[i]);
       if (!sample.isDefined ())
         return false;
-      values[i] = iso - sample.value;
-      gradients.row (i) = sample.gradient.transpose ();
+      meeting.add (sample.gradient, iso - sample.value);
+      squares += std::pow (iso - sample.value, 2);
+      if (gradients_there != nullptr)
+        (*gradients_there)[i] = sample.gradient;
     }
-    Eigen::JacobiSVD<Eigen::MatrixXd> svd (gradients, Eigen::ComputeThinU | Eigen::ComputeThinV);
-    svd.setThreshold (PARALLEL);
-    const Eigen::Vector3d move = svd.solve (values);
+    const Eigen::Vector3d move = meeting.point (PARALLEL);
     if (!((x + move - start).norm () < reach))
       return false;
     x += move;
-    if (gradients_there != nullptr)
-      for (Eigen::Index i = 0; i < count; ++i)
-        (*gradients_there)[static_cast<std::size_t> (i)] = gradients.row (i).transpose ();
     if (move.norm () < tolerance)
       return true;
   }
-  return values.norm () < 1e3 * tolerance;
+  return std::sqrt (squares) < 1e3 * tolerance;
 }
 
 } // namespace erkpa

@@ -2,10 +2,10 @@
 #include "feature_loops.h"
 
 #include "crease_solver.h"
+#include "plane_meeting.h"
 #include "threads.h"
 
 #include <Eigen/Geometry>
-#include <Eigen/SVD>
 
 #include <algorithm>
 #include <cmath>
@@ -31,16 +31,16 @@ public:
   void
   mesh (const CellLoop &loop, MeshedLoop &result)
   {
-    Eigen::Vector3d middle = Eigen::Vector3d::Zero ();
+    Eigen::Vector3d around = Eigen::Vector3d::Zero ();
     for (const int v : loop.ring)
-      middle += position (v) / static_cast<double> (loop.ring.size ());
+      around += position (v) / static_cast<double> (loop.ring.size ());
     is_gathered_ = false;
-    findSides (loop, middle, result);
+    findSides (loop, around, result);
     if (result.crossings.empty ())
       return;
+    gatherOnce (around);
     const bool is_single = result.crossings.size () == 2; // one crease runs through: the vertex may be anywhere on it
-    if (is_single)
-      middle = middleOf (result.crossings);
+    const Eigen::Vector3d middle = is_single ? middleOf (result.crossings) : around;
     result.position = minimizeDistances (loop, middle);
     result.has_center = solve (middle, result.position);
     if (result.has_center && is_single)
@@ -162,14 +162,21 @@ private:
   bool
   isCrease (int a, int b, const Eigen::Vector3d &around)
   {
-    constexpr double SMOOTH = 0.5; // of that turn: where the normals of the vertices say so already
-    if (turnBetween (normalOf (a), normalOf (b)) < SMOOTH * LEAST_TURN)
-      return false;
-    if (!std::exchange (is_gathered_, true))
-      local_.gather (around, NEAR * voxel_);
+    constexpr double SMOOTH = 0.5, SHARP = 10.0; // of that turn: where the normals of the vertices say it already
+    const double turn = turnBetween (normalOf (a), normalOf (b));
+    if (turn < SMOOTH * LEAST_TURN || turn > SHARP * LEAST_TURN)
+      return turn > SHARP * LEAST_TURN;
+    gatherOnce (around);
     const Eigen::Vector3d middle = 0.5 * (position (a) + position (b));
     const LocalSample one = local_.sampleOnSide (middle, sideOf (a)), other = local_.sampleOnSide (middle, sideOf (b));
     return one.isDefined () && other.isDefined () && turnBetween (one.gradient, other.gradient) > LEAST_TURN;
+  }
+
+  void
+  gatherOnce (const Eigen::Vector3d &around)
+  {
+    if (!std::exchange (is_gathered_, true))
+      local_.gather (around, NEAR * voxel_);
   }
 
   static double
@@ -182,18 +189,13 @@ private:
   Eigen::Vector3d
   minimizeDistances (const CellLoop &loop, const Eigen::Vector3d &middle) const
   {
-    Eigen::MatrixXd planes (loop.ring.size (), 3);
-    Eigen::VectorXd distances (loop.ring.size ());
-    for (std::size_t i = 0; i < loop.ring.size (); ++i)
+    PlaneMeeting meeting;
+    for (const int v : loop.ring)
     {
-      const auto row = static_cast<Eigen::Index> (i);
-      const Eigen::Vector3d &normal = vertices_.normals[static_cast<std::size_t> (loop.ring[i])];
-      planes.row (row) = normal.transpose ();
-      distances[row] = normal.dot (position (loop.ring[i]) - middle);
+      const Eigen::Vector3d &normal = vertices_.normals[static_cast<std::size_t> (v)];
+      meeting.add (normal, normal.dot (position (v) - middle));
     }
-    Eigen::JacobiSVD<Eigen::MatrixXd> svd (planes, Eigen::ComputeThinU | Eigen::ComputeThinV);
-    svd.setThreshold (0.1);
-    const Eigen::Vector3d step = svd.solve (distances);
+    const Eigen::Vector3d step = meeting.point (0.1);
     const double length = step.norm ();
     const double limit = 1.5 * voxel_;
     return middle + (length > limit ? limit / length : 1.0) * step;

@@ -10,6 +10,7 @@
 #include "parallel_collect.h"
 #include "sliver_removal.h"
 #include "sparse_grid.h"
+#include "stage_clock.h"
 #include "surface_pieces.h"
 #include "surface_tracking.h"
 #include "surface_vertices.h"
@@ -177,6 +178,62 @@ toInputFrame (const OrientedPoints &points, int threads, const SurfaceVertices &
   return mesh;
 }
 
+Outcome
+followSurface (SurfaceTracker &tracker, SparseGrid &grid, PolygonizerReport &report)
+{
+  const StageClock clock (report.seconds_grid);
+  Outcome outcome = tracker.track ();
+  if (outcome.ok ())
+    grid.markCutEdges ();
+  return outcome;
+}
+
+/** \brief The loops that creases run through, as triangles with their vertices and edges on these. */
+std::vector<VertexPair>
+meshCreases (const ImplicitField &field, const PolygonizerOptions &options, const std::vector<CellLoop> &mixed_loops,
+             std::vector<Triangle> &triangles, SurfaceVertices &vertices, PolygonizerReport &report)
+{
+  const StageClock clock (report.seconds_creases);
+  const std::vector<MeshedLoop> loops =
+      meshLoops (field, options, mixed_loops, report.voxel_size, vertices, report);
+  return addCreases (report.voxel_size, mixed_loops, loops, options.threads, triangles, vertices);
+}
+
+/** \brief Joins the vertices to a mesh that ends where the data do.
+ * \param[in,out] vertices those in the middle of cells, on creases and borders are added
+ * \param[out] creases edges of the mesh
+ * \return the triangles; none where no data support a piece of surface
+ */
+std::vector<Triangle>
+meshSurface (const ImplicitField &field, const PolygonizerOptions &options, const SparseGrid &grid,
+             const SurfaceTracker &tracker, SurfaceVertices &vertices, std::vector<VertexPair> &creases,
+             PolygonizerReport &report)
+{
+  const StageClock clock (report.seconds_triangles);
+  const double voxel = report.voxel_size;
+  CellMesh cell_mesh = meshCells (grid, tracker.activeCells (), options.threads, vertices);
+  const std::size_t at_middles = vertices.positions.size ();
+  std::vector<Triangle> triangles = std::move (cell_mesh.triangles);
+  meshCentered (cell_mesh.centered_loops, triangles, vertices);
+  projectVertices (field, options, at_middles, 0.3 * voxel, vertices, report);
+  creases = meshCreases (field, options, cell_mesh.mixed_loops, triangles, vertices, report);
+  report.seconds_triangles -= report.seconds_creases; // which passed on both clocks
+  const std::size_t in_cells = vertices.positions.size ();
+  trimBorder (options.border_offset, options.threads, cell_mesh.border, triangles, vertices);
+  projectVertices (field, options, in_cells, 0.1 * voxel, vertices, report);
+  const int min_points = std::min (options.min_component_points, static_cast<int> (field.points ().size ()) / 2);
+  report.dropped_components = dropUnsupported (grid, tracker.cellsOfNodes (), min_points, options.threads,
+                                               vertices.positions.size (), triangles);
+  if (triangles.empty ())
+    return triangles;
+  splitFans (cell_mesh.border, options.threads, triangles, vertices);
+  fillNormals (triangles, options.threads, vertices);
+  vertices.border_offsets = std::vector<double> (); // has done its work, as have the next two
+  vertices.faces = std::vector<int> ();
+  vertices.side_keys = std::vector<std::uint64_t> ();
+  return triangles;
+}
+
 } // namespace
 
 double
@@ -211,36 +268,28 @@ polygonize (const ImplicitField &field, const PolygonizerOptions &options, Trian
   // Off the middle of the cloud by odd shares of a cell: faces of boxes then do not fall on grid nodes.
   SparseGrid grid (-voxel * Eigen::Vector3d (0.371, 0.437, 0.293), voxel);
   SurfaceTracker tracker (field, options, grid, report, partOf (progress, 0.0, 0.5));
-  outcome = tracker.track ();
+  outcome = followSurface (tracker, grid, report);
   if (!outcome.ok ())
     return outcome;
-  grid.markCutEdges ();
   SurfaceVertices vertices;
-  placeVertices (field, options, grid, vertices, report, partOf (progress, 0.5, 0.5));
-
-  CellMesh cell_mesh = meshCells (grid, tracker.activeCells (), options.threads, vertices);
-  const std::size_t at_middles = vertices.positions.size ();
-  std::vector<Triangle> triangles = std::move (cell_mesh.triangles);
-  meshCentered (cell_mesh.centered_loops, triangles, vertices);
-  projectVertices (field, options, at_middles, 0.3 * voxel, vertices, report);
-  const std::vector<MeshedLoop> loops = meshLoops (field, options, cell_mesh.mixed_loops, voxel, vertices, report);
-  std::vector<VertexPair> creases =
-      addCreases (voxel, cell_mesh.mixed_loops, loops, options.threads, triangles, vertices);
-  const std::size_t in_cells = vertices.positions.size ();
-  trimBorder (options.border_offset, options.threads, cell_mesh.border, triangles, vertices);
-  projectVertices (field, options, in_cells, 0.1 * voxel, vertices, report);
-  const int min_points = std::min (options.min_component_points, static_cast<int> (field.points ().size ()) / 2);
-  report.dropped_components = dropUnsupported (grid, tracker.cellsOfNodes (), min_points, options.threads,
-                                               vertices.positions.size (), triangles);
+  {
+    const StageClock clock (report.seconds_vertices);
+    placeVertices (field, options, grid, vertices, report, partOf (progress, 0.5, 0.5));
+  }
+  std::vector<VertexPair> creases;
+  std::vector<Triangle> triangles = meshSurface (field, options, grid, tracker, vertices, creases, report);
   if (triangles.empty ())
     return noSurface (field, voxel, report.dropped_components);
-  splitFans (cell_mesh.border, options.threads, triangles, vertices);
-  fillNormals (triangles, options.threads, vertices);
-  vertices.border_offsets = std::vector<double> (); // has done its work, as have the next two
-  vertices.faces = std::vector<int> ();
-  vertices.side_keys = std::vector<std::uint64_t> ();
-  removeSlivers (voxel, creases, triangles, vertices, options.threads);
-  std::vector<Crease> lines = traceCreases (field, options, creases, triangles, vertices);
+  {
+    const StageClock clock (report.seconds_slivers);
+    removeSlivers (voxel, creases, triangles, vertices, options.threads);
+  }
+  std::vector<Crease> lines;
+  {
+    const StageClock clock (report.seconds_creases);
+    lines = traceCreases (field, options, creases, triangles, vertices);
+  }
+  const StageClock clock (report.seconds_triangles);
   mesh = toInputFrame (field.points (), options.threads, vertices, triangles, std::move (lines));
   return {};
 }

@@ -87,18 +87,69 @@ struct Box
   }
 };
 
-/** \brief Calls visit with the key of each grid cell that a box reaches into. */
-template <typename VisitT>
-void
-visitCells (const Box &box, double cell, VisitT visit)
+/** \brief Triangles by the cells of a grid that their boxes reach into. */
+class CellTable
 {
-  const Vector3d low = (box.low / cell).array ().floor (), high = (box.high / cell).array ().floor ();
-  const auto part = [] (double v) { return static_cast<std::uint64_t> (static_cast<std::int64_t> (v)) & 0x1fffff; };
-  for (double x = low.x (); x <= high.x (); ++x)
-    for (double y = low.y (); y <= high.y (); ++y)
-      for (double z = low.z (); z <= high.z (); ++z)
-        visit (part (x) << 42 | part (y) << 21 | part (z));
-}
+public:
+  CellTable (const Positions &positions, const std::vector<Triangle> &triangles, const std::vector<int> &which,
+             double cell)
+      : per_cell_ (1.0 / cell)
+  {
+    while (is_taken_.size () < PLACES * which.size ())
+      is_taken_.resize (std::max<std::size_t> (64, 2 * is_taken_.size ()), 0);
+    for (const int t : which)
+      visitCells (Box (positions, triangles[static_cast<std::size_t> (t)]),
+                  [&] (std::uint64_t key)
+                  {
+                    cells_[key].push_back (t);
+                    is_taken_[placeOf (key)] = 1;
+                  });
+  }
+
+  /** \brief Calls visit with the triangles in the cells of a box, those of several cells several times. */
+  template <typename VisitT>
+  void
+  visit (const Box &box, VisitT visit) const
+  {
+    if (is_taken_.empty ())
+      return;
+    visitCells (box,
+                [&] (std::uint64_t key)
+                {
+                  if (!is_taken_[placeOf (key)])
+                    return; // most are far from all of them
+                  const auto found = cells_.find (key);
+                  if (found != cells_.end ())
+                    for (const int t : found->second)
+                      visit (t);
+                });
+  }
+
+private:
+  static constexpr std::size_t PLACES = 16; // per triangle
+
+  template <typename VisitT>
+  void
+  visitCells (const Box &box, VisitT visit) const
+  {
+    const Vector3d low = (box.low * per_cell_).array ().floor (), high = (box.high * per_cell_).array ().floor ();
+    const auto part = [] (double v) { return static_cast<std::uint64_t> (static_cast<std::int64_t> (v)) & 0x1fffff; };
+    for (double x = low.x (); x <= high.x (); ++x)
+      for (double y = low.y (); y <= high.y (); ++y)
+        for (double z = low.z (); z <= high.z (); ++z)
+          visit (part (x) << 42 | part (y) << 21 | part (z));
+  }
+
+  std::size_t
+  placeOf (std::uint64_t key) const
+  {
+    return (key * 0x9e3779b97f4a7c15u >> 32) & (is_taken_.size () - 1);
+  }
+
+  double per_cell_;
+  std::unordered_map<std::uint64_t, std::vector<int>> cells_;
+  std::vector<char> is_taken_; // by a number made of a cell's key
+};
 
 } // namespace
 
@@ -115,30 +166,22 @@ std::vector<std::pair<int, int>>
 findIntersections (const Positions &positions, const std::vector<Triangle> &triangles, const std::vector<int> &suspects,
                    double cell, int threads)
 {
-  std::unordered_map<std::uint64_t, std::vector<int>> cells;
   std::vector<char> is_suspect (triangles.size (), 0);
   for (const int s : suspects)
-  {
     is_suspect[static_cast<std::size_t> (s)] = 1;
-    visitCells (Box (positions, triangles[static_cast<std::size_t> (s)]), cell,
-                [&] (std::uint64_t key) { cells[key].push_back (s); });
-  }
+  const CellTable table (positions, triangles, suspects, cell);
   using Pairs = std::vector<std::pair<int, int>>;
   const auto find_with = [&] (std::size_t t, Pairs &pairs)
   {
     const Box box (positions, triangles[t]);
-    visitCells (box, cell,
-                [&] (std::uint64_t key)
-                {
-                  const auto found = cells.find (key);
-                  if (found == cells.end ())
-                    return;
-                  for (const int s : found->second)
-                    if ((!is_suspect[t] || s < static_cast<int> (t)) &&
-                        box.meets (Box (positions, triangles[static_cast<std::size_t> (s)])) &&
-                        passThrough (positions, triangles[static_cast<std::size_t> (s)], triangles[t]))
-                      pairs.emplace_back (s, static_cast<int> (t));
-                });
+    table.visit (box,
+                 [&] (int s)
+                 {
+                   const Triangle &suspect = triangles[static_cast<std::size_t> (s)];
+                   if ((!is_suspect[t] || s < static_cast<int> (t)) && box.meets (Box (positions, suspect)) &&
+                       passThrough (positions, suspect, triangles[t]))
+                     pairs.emplace_back (s, static_cast<int> (t));
+                 });
   };
   constexpr std::size_t STRETCH = 2048;
   Pairs pairs = parallelCollect<std::pair<int, int>> (

@@ -11,15 +11,19 @@
 namespace erkpa
 {
 
-/** \brief The elements of all parts, one part after the other; the parts are given up. */
+/** \brief The elements of all parts, one part after the other; the parts are given up.
+ * \param[in] spare memory for what will be appended, as a share of them
+ */
 template <typename T>
 std::vector<T>
-joinParts (std::vector<std::vector<T>> &&parts, int threads)
+joinParts (std::vector<std::vector<T>> &&parts, int threads, double spare = 0.0)
 {
   std::vector<std::size_t> firsts (parts.size () + 1, 0);
   for (std::size_t i = 0; i < parts.size (); ++i)
     firsts[i + 1] = firsts[i] + parts[i].size ();
-  std::vector<T> joined (firsts.back ());
+  std::vector<T> joined;
+  joined.reserve (firsts.back () + static_cast<std::size_t> (spare * static_cast<double> (firsts.back ())));
+  joined.resize (firsts.back ());
   parallelFor (
       parts.size (), threads, [] { return 0; },
       [&] (int, std::size_t i)

@@ -2,12 +2,12 @@
 #include <erkpa/reconstruction.h>
 
 #include "node_table.h"
+#include "stage_clock.h"
 #include "support.h"
 #include "support_size.h"
 #include "text.h"
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <memory>
 #include <string>
@@ -17,27 +17,6 @@ namespace erkpa
 
 namespace
 {
-
-/** \brief Adds the time it lives to a number of seconds. */
-class StageClock
-{
-public:
-  explicit StageClock (double &seconds) : seconds_ (seconds), start_ (Clock::now ()) {}
-
-  StageClock (const StageClock &) = delete;
-  StageClock &
-  operator= (const StageClock &) = delete;
-
-  ~StageClock ()
-  {
-    seconds_ += std::chrono::duration<double> (Clock::now () - start_).count ();
-  }
-
-private:
-  using Clock = std::chrono::steady_clock;
-  double &seconds_;
-  Clock::time_point start_;
-};
 
 Outcome
 collect (const PointView &view, const SearchFactory &make_search, int threads, OrientedPoints &points,

@@ -245,6 +245,8 @@ TEST_F (BlockFieldTest, AgreesWithTheDefinitionWhereSharpSurfacesPass)
     const auto field = shapes::field (shapes::box (6000, half), options);
     const double spacing = field->spacing ();
     std::vector<Vector3d> middles = shapes::boxEdgePoints (half, 5);
+    for (int i = 0; i < 8; ++i)
+      middles.emplace_back (i & 1 ? 0.5 : -0.5, i & 2 ? 0.35 : -0.35, i & 4 ? 0.25 : -0.25);
     for (int i = 0; i < 12; ++i)
       middles.emplace_back (0.5, 0.2 * std::sin (0.5 * i), 0.2 * std::cos (0.5 * i));
     std::size_t engines = 0;
@@ -270,7 +272,7 @@ TEST_F (BlockFieldTest, AgreesWithTheDefinitionWhereSharpSurfacesPass)
           EXPECT_LT ((sample.gradient - block.gradient (i)).norm (), 2e-3) << engine[e]->name;
         }
       }
-      EXPECT_GT (settled, compared / 2) << engine[e]->name << ": all but the corners";
+      EXPECT_GT (settled, compared - compared / 10) << engine[e]->name;
       EXPECT_GT (keys, settled - settled / 100) << "a node on the very rim of a support may count or not";
     }
   }

@@ -33,6 +33,11 @@ struct PolygonizerReport
   std::size_t evaluations = 0;        ///< evaluations of the field
   std::size_t support_nodes = 0;      ///< nodes in the supports of all evaluations together
   std::size_t dropped_components = 0; ///< pieces no data supported
+  double seconds_grid = 0.0;          ///< following the surface through the grid
+  double seconds_vertices = 0.0;      ///< placing vertices on it
+  double seconds_triangles = 0.0;     ///< joining them within each cell; borders and pieces without support cut off
+  double seconds_creases = 0.0;       ///< vertices and edges on creases, and the lines along them
+  double seconds_slivers = 0.0;       ///< removing narrow triangles
 };
 
 /** \brief The side of the grid cells these options give for a field. */

@@ -39,8 +39,6 @@ public:
       storeFit (fit, first);
       if (settings_.gradients)
         storeGradients (support, fit, first, state);
-      else if constexpr (FitT::IS_ENRICHED)
-        state = xsimd::select (fit.kinks ().isAtCorner () && state < B (0.5f), B (2.0f), state);
       storeBytes (near, state, fit, first);
     }
   }
@@ -110,7 +108,7 @@ private:
       float active[B::size];
       fit.kinks ().isActive (s).store_unaligned (active);
       for (std::size_t i = 0; i < B::size; ++i)
-        samples_.active[first + i] |= active[i] > 0.5f ? 1u << s : 0u;
+        samples_.active[first + i] |= active[i] > 0.5f ? 1u << fit.kinks ().number (s) : 0u;
     }
   }
 

@@ -25,8 +25,8 @@ public:
   LaneEnrichedFit (const Settings &settings, const Nodes &nodes, const SharpSurfaces &sharp, std::size_t first,
                    const LaneSupport<B> &support)
       : nodes_ (nodes), support_ (support), weights_ (settings, nodes, support), scale_ (support.inverse ()),
-        reach_ (settings, support.radius (), support.squaredRadius ()), kinks_ (sharp, first, scale_),
-        size_ (SIZE + 2 * kinks_.surfaces ())
+        reach_ (settings, support.radius (), support.squaredRadius ()), kinks_ (sharp, first, support.radius (), scale_),
+        size_ (SIZE + kinks_.terms ())
   {
     sumMoments ();
     TermsT::addGradientMoments (M_);
@@ -107,12 +107,12 @@ public:
     }
   }
 
-  /** \brief Where corners would have terms of their own, or a pivot that is raised moves the gradient. */
+  /** \brief Where a pivot that is raised moves the gradient. */
   Mask
   isUnsettled () const
   {
     constexpr float NEGLIGIBLE = 1e-5f;
-    Mask unsettled = kinks_.isAtCorner ();
+    Mask unsettled = B (0.0f) > B (1.0f);
     for (int j = 1; j < size_; ++j)
       unsettled = unsettled || xsimd::abs (a_[j] * c_[j] * raises_[j]) > B (NEGLIGIBLE);
     return unsettled;
@@ -161,7 +161,7 @@ private:
   int
   squareOf (int s) const
   {
-    return SIZE + kinks_.surfaces () + s;
+    return SIZE + kinks_.squareOf (s);
   }
 
   void

@@ -8,36 +8,76 @@
 namespace erkpa::lanes
 {
 
-/** \brief The terms that sharp surfaces add, in lanes: for each a kink θH(θ), and after all of these each one's θ².
+/** \brief The terms that sharp surfaces add, in lanes: for each a kink θH(θ), then for each three that meet in a corner
+ * min (a⁺, b⁺), and after all of these each surface's θ².
  *
  * See Enrichment: a kink is seen from the side on which it is zero at x, where it may be; it counts where the support
  * holds nodes on either side of its surface; its square fades where few lie on one of them. A term's value at a node
- * and its slope are in coordinates u = (y - x) / ε, as θ / ε.
+ * and its slope are in coordinates u = (y - x) / ε, as θ / ε. Surfaces that pass by the supports of all lanes are left
+ * out.
  */
 template <typename B>
 class LaneKinks
 {
 public:
-  static constexpr int MAX_TERMS = 2 * static_cast<int> (MAX_SURFACES);
+  static constexpr int MAX_CORNERS = static_cast<int> (SharpSurfaces::MAX_PENCILS);
+  static constexpr int MAX_TERMS = 2 * static_cast<int> (MAX_SURFACES) + MAX_CORNERS;
 
   /** \param[in] first place of the evaluation point in the first lane
-   * \param[in] scale 1 / ε
+   * \param[in] radius,scale ε and 1 / ε
    */
-  LaneKinks (const SharpSurfaces &sharp, std::size_t first, B scale)
-      : sharp_ (sharp), scale_ (scale), count_ (static_cast<int> (sharp.count))
+  LaneKinks (const SharpSurfaces &sharp, std::size_t first, B radius, B scale) : scale_ (scale)
   {
+    int place[MAX_SURFACES]; // of a surface among those kept
+    for (std::size_t s = 0; s < sharp.count; ++s)
+    {
+      place[s] = passesSupport (sharp.surfaces[s], first, radius) ? count_ : -1;
+      if (place[s] < 0)
+        continue;
+      surfaces_[count_] = &sharp.surfaces[s];
+      number_[count_++] = static_cast<int> (s);
+    }
+    for (std::size_t p = 0; p < sharp.pencil_count; ++p)
+    {
+      const Pencil &pencil = sharp.pencils[p];
+      const int a = place[pencil.surfaces[0]], b = place[pencil.surfaces[1]], c = place[pencil.surfaces[2]];
+      if (a >= 0 && b >= 0 && c >= 0)
+        corners_[corner_count_++] = {a, b, c, pencil.scale_a, pencil.scale_b};
+    }
     for (int s = 0; s < count_; ++s)
     {
       below_[s] = above_[s] = B (0.0f);
       seeFrom (first, s);
     }
+    for (int k = 0; k < corner_count_; ++k)
+      seeCornerFrom (first, k);
   }
 
-  /** \brief Number of sharp surfaces; there are twice as many terms. */
+  /** \brief Number of sharp surfaces. */
   int
   surfaces () const
   {
     return count_;
+  }
+
+  /** \brief Place of a surface among those that were given. */
+  int
+  number (int surface) const
+  {
+    return number_[surface];
+  }
+
+  int
+  terms () const
+  {
+    return 2 * count_ + corner_count_;
+  }
+
+  /** \brief Place of a surface's θ² among the terms. */
+  int
+  squareOf (int surface) const
+  {
+    return count_ + corner_count_ + surface;
   }
 
   /** \brief Values and slopes of the terms at a node. */
@@ -46,17 +86,19 @@ public:
   {
     for (int s = 0; s < count_; ++s)
     {
-      const Surface &surface = sharp_.surfaces[s];
+      const Surface &surface = *surfaces_[s];
       const B theta = B (surface.theta[node]) * scale_, height = sign_[s] * theta, on = isOn (height, s);
       R[s] = on * height;
-      R[count_ + s] = theta * theta;
+      R[squareOf (s)] = theta * theta;
       for (int a = 0; a < 3; ++a)
       {
         const B g (surface.gradient[a][node]);
         G[s][a] = on * sign_[s] * g;
-        G[count_ + s][a] = B (2.0f) * theta * g;
+        G[squareOf (s)][a] = B (2.0f) * theta * g;
       }
     }
+    for (int k = 0; k < corner_count_; ++k)
+      evaluateCorner (node, k, R[count_ + k], G[count_ + k]);
   }
 
   /** \brief Calls visit (surface, whether it is below) for the surfaces that a node is not on. */
@@ -65,7 +107,7 @@ public:
   visitSides (std::size_t node, VisitT visit) const
   {
     for (int s = 0; s < count_; ++s)
-      if (const float theta = sharp_.surfaces[s].theta[node]; theta < 0.0f || theta > 0.0f)
+      if (const float theta = surfaces_[s]->theta[node]; theta < 0.0f || theta > 0.0f)
         visit (s, theta < 0.0f);
   }
 
@@ -103,9 +145,14 @@ public:
   {
     if (term < count_)
       return active_[term];
-    const int s = term - count_;
+    if (term < squareOf (0))
+    {
+      const Corner &corner = corners_[term - count_];
+      return active_[corner.a] * active_[corner.b] * active_[corner.c];
+    }
+    const int s = term - squareOf (0);
     const B zero (0.0f);
-    return sharp_.surfaces[s].squared ? xsimd::select (presence_[s] > B (MIN_PRESENCE), active_[s], zero) : zero;
+    return surfaces_[s]->squared ? xsimd::select (presence_[s] > B (MIN_PRESENCE), active_[s], zero) : zero;
   }
 
   /** \brief A term's value at x. */
@@ -146,39 +193,96 @@ public:
            B (4.0f) * fade * radius_gradient;
   }
 
-  /** \brief Where three surfaces meet and count. */
-  auto
-  isAtCorner () const
-  {
-    auto corner = B (0.0f) > B (1.0f);
-    for (std::size_t p = 0; p < sharp_.pencil_count; ++p)
-    {
-      const int *of = sharp_.pencils[p];
-      corner = corner || active_[of[0]] * active_[of[1]] * active_[of[2]] > B (0.5f);
-    }
-    return corner;
-  }
-
 private:
   static constexpr float LEAST_BALANCE = 0.2f, FADE = 0.1f, MIN_PRESENCE = 1e-6f; // see Enrichment and FieldFit
+
+  using Mask = decltype (B () < B ());
+
+  /** \brief The term of three surfaces that meet: min (scale_a a, scale_b b), where that is positive. */
+  struct Corner
+  {
+    int a, b, c;
+    float scale_a, scale_b;
+  };
+
+  /** \brief Whether a surface may pass between the nodes of a support; θ of a reversible one, a plane, is a distance. */
+  static bool
+  passesSupport (const Surface &surface, std::size_t first, B radius)
+  {
+    const B theta = B::load_unaligned (surface.theta_at + first);
+    return !surface.reversible || xsimd::any (xsimd::abs (theta) <= B (1.00001f) * radius);
+  }
 
   void
   seeFrom (std::size_t first, int s)
   {
-    const Surface &surface = sharp_.surfaces[s];
+    const Surface &surface = *surfaces_[s];
     const B theta = B::load_unaligned (surface.theta_at + first), one (1.0f), zero (0.0f);
     const auto holds_x = theta >= zero;
     sign_[s] = surface.reversible ? xsimd::select (holds_x, -one, one) : one;
     open_[s] = surface.reversible ? xsimd::select (holds_x, one, zero) : zero;
     const B height = sign_[s] * theta * scale_, on = isOn (height, s);
     at_x_[s] = on * height;
-    at_x_[count_ + s] = theta * theta * scale_ * scale_;
+    at_x_[squareOf (s)] = theta * theta * scale_ * scale_;
     for (int a = 0; a < 3; ++a)
     {
       const B g = B::load_unaligned (surface.gradient_at[a] + first);
       slope_at_x_[s][a] = on * sign_[s] * g;
-      slope_at_x_[count_ + s][a] = B (2.0f) * theta * scale_ * g;
+      slope_at_x_[squareOf (s)][a] = B (2.0f) * theta * scale_ * g;
     }
+  }
+
+  void
+  seeCornerFrom (std::size_t first, int k)
+  {
+    const Corner &corner = corners_[k];
+    const Surface &a = *surfaces_[corner.a], &b = *surfaces_[corner.b];
+    const B zero (0.0f), one (1.0f), height_a = B (corner.scale_a) * B::load_unaligned (a.theta_at + first),
+            height_b = B (corner.scale_b) * B::load_unaligned (b.theta_at + first);
+    const auto holds_x = height_a >= zero && height_b >= zero;
+    const B sign = a.reversible && b.reversible ? xsimd::select (holds_x, -one, one) : one;
+    is_behind_[k] = sign < zero;
+    const auto is_b = sign * height_b < sign * height_a;
+    const B scale = sign * xsimd::select (is_b, B (corner.scale_b), B (corner.scale_a));
+    const B height = sign * xsimd::select (is_b, height_b, height_a) * scale_;
+    const auto is_on = height > zero || (height >= zero && scale > zero);
+    at_x_[count_ + k] = xsimd::select (is_on, height, zero);
+    for (int i = 0; i < 3; ++i)
+    {
+      const B slope = xsimd::select (is_b, B::load_unaligned (b.gradient_at[i] + first),
+                                     B::load_unaligned (a.gradient_at[i] + first));
+      slope_at_x_[count_ + k][i] = xsimd::select (is_on, scale * slope, zero);
+    }
+  }
+
+  /** \brief A corner's term at a node; which of its surfaces is lower is for the third to say: see
+   * Enrichment::isSecondLower (). */
+  void
+  evaluateCorner (std::size_t node, int k, B &value, B *gradient) const
+  {
+    const Corner &corner = corners_[k];
+    const Surface &a = *surfaces_[corner.a], &b = *surfaces_[corner.b], &c = *surfaces_[corner.c];
+    float turn = 0.0f;
+    for (int i = 0; i < 3; ++i)
+      turn += (corner.scale_a * a.gradient[i][node] - corner.scale_b * b.gradient[i][node]) * c.gradient[i][node];
+    const bool is_above = c.theta[node] >= 0.0f;
+    const auto piece = [&] (float sign, float &height, float *slope)
+    {
+      const bool is_b = sign * turn > 0.0f ? is_above : !is_above;
+      const Surface &lower = is_b ? b : a;
+      const float scale = sign * (is_b ? corner.scale_b : corner.scale_a);
+      height = scale * lower.theta[node];
+      const bool is_on = height > 0.0f || (height >= 0.0f && scale > 0.0f);
+      height = is_on ? height : 0.0f;
+      for (int i = 0; i < 3; ++i)
+        slope[i] = is_on ? scale * lower.gradient[i][node] : 0.0f;
+    };
+    float height, slope[3], height_behind, slope_behind[3];
+    piece (1.0f, height, slope);
+    piece (-1.0f, height_behind, slope_behind);
+    value = xsimd::select (is_behind_[k], B (height_behind), B (height)) * scale_;
+    for (int i = 0; i < 3; ++i)
+      gradient[i] = xsimd::select (is_behind_[k], B (slope_behind[i]), B (slope[i]));
   }
 
   /** \brief 1 where a kink of this height is not zero. */
@@ -202,9 +306,12 @@ private:
     return xsimd::max (presence_[s], B (MIN_PRESENCE));
   }
 
-  const SharpSurfaces &sharp_;
   B scale_;
-  int count_;
+  int count_ = 0, corner_count_ = 0;
+  const Surface *surfaces_[MAX_SURFACES];
+  int number_[MAX_SURFACES];
+  Corner corners_[MAX_CORNERS];
+  Mask is_behind_[MAX_CORNERS]; // where a corner is seen from
   B sign_[MAX_SURFACES], open_[MAX_SURFACES]; // of θ; 1 where the kink is zero on the surface itself
   B below_[MAX_SURFACES], above_[MAX_SURFACES], presence_[MAX_SURFACES], active_[MAX_SURFACES];
   B at_x_[MAX_TERMS], slope_at_x_[MAX_TERMS][3];

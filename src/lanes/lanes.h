@@ -95,6 +95,13 @@ struct Surface
   bool squared;                           ///< its kink comes with θ²
 };
 
+/** \brief Three surfaces that meet in a corner: see erkpa::Pencil. */
+struct Pencil
+{
+  int surfaces[3];
+  float scale_a, scale_b;
+};
+
 /** \brief Those that pass near the points; for the Hermite constraint only. */
 struct SharpSurfaces
 {
@@ -103,7 +110,7 @@ struct SharpSurfaces
   std::size_t count; ///< 0: none, and no enrichment
   Surface surfaces[MAX_SURFACES];
   std::size_t pencil_count;
-  int pencils[MAX_PENCILS][3]; ///< those that meet in a corner: points where all three count are left unsettled
+  Pencil pencils[MAX_PENCILS];
 };
 
 enum class State : std::uint8_t

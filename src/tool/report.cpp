@@ -58,6 +58,12 @@ secondsToJson (const Report &report, const ToolTimes &times)
           {"sharp", report.seconds_sharp},
           {"field", report.seconds_field},
           {"polygonizer", report.seconds_polygonizer},
+          {"of_polygonizer",
+           {{"grid", report.polygonizer.seconds_grid},
+            {"vertices", report.polygonizer.seconds_vertices},
+            {"triangles", report.polygonizer.seconds_triangles},
+            {"creases", report.polygonizer.seconds_creases},
+            {"slivers", report.polygonizer.seconds_slivers}}},
           {"evaluate", times.evaluate},
           {"write", times.write},
           {"total", times.total}};

@@ -53,43 +53,18 @@ cpuSeconds ()
   return seconds (used.ru_utime) + seconds (used.ru_stime);
 }
 
-/** \brief Tells the parts of meshing apart by the progress that is reported: up to a half it follows the surface
- * through the grid, from then on it places vertices, and what comes after the last report makes the mesh of them. */
-class MeshingStages
-{
-public:
-  explicit MeshingStages (Clock::time_point start) : start_ (start) {}
-
-  void
-  progress (double done)
-  {
-    last_ = secondsSince (start_);
-    if (done <= 0.5)
-      grid_ = last_;
-  }
-
-  void
-  write (const erkpa::Report &report, Json &seconds) const
-  {
-    const double begin = report.seconds_total - report.seconds_polygonizer;
-    seconds["grid"] = std::max (0.0, grid_ - begin);
-    seconds["vertices"] = std::max (0.0, last_ - std::max (begin, grid_));
-    seconds["mesh"] = std::max (0.0, report.seconds_total - std::max (begin, last_));
-  }
-
-private:
-  Clock::time_point start_;
-  double grid_ = 0.0, last_ = 0.0; // ends
-};
-
 Json
-describe (const erkpa::Report &report, const MeshingStages &stages, double total)
+describe (const erkpa::Report &report, double total)
 {
   Json seconds{{"points", report.seconds_points},
                {"normals", report.seconds_normals},
                {"sharp", report.seconds_sharp},
-               {"field", report.seconds_field}};
-  stages.write (report, seconds);
+               {"field", report.seconds_field},
+               {"grid", report.polygonizer.seconds_grid},
+               {"vertices", report.polygonizer.seconds_vertices},
+               {"triangles", report.polygonizer.seconds_triangles},
+               {"creases", report.polygonizer.seconds_creases},
+               {"slivers", report.polygonizer.seconds_slivers}};
   seconds["output"] = std::max (0.0, total - report.seconds_total);
   seconds["total"] = total;
   return {{"seconds", seconds},
@@ -118,13 +93,11 @@ reconstruct (const Run &run, const Shape &shape)
   erkpa.setInputCloud (shape.cloud);
   pcl::PolygonMesh mesh;
   const Clock::time_point start = Clock::now ();
-  MeshingStages stages (start);
-  erkpa.setProgressCallback ([&stages] (double done) { stages.progress (done); });
   erkpa.reconstruct (mesh);
   const double total = secondsSince (start);
   if (erkpa.getStatus () != erkpa::Status::OK)
     return {{"error", erkpa.getStatusMessage ()}};
-  return describe (erkpa.getReport (), stages, total);
+  return describe (erkpa.getReport (), total);
 }
 
 /** \brief Longest side of the box around the cloud. */

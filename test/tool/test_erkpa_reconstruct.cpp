@@ -143,6 +143,11 @@ TEST_F (ErkpaReconstruct, ReportsWhatItDid)
     sum += report["seconds"][stage].get<double> ();
   EXPECT_GT (sum, 0.0);
   EXPECT_LE (sum, report["seconds"]["total"]);
+  double of_polygonizer = 0.0;
+  for (const std::string stage : {"grid", "vertices", "triangles", "creases", "slivers"})
+    of_polygonizer += report["seconds"]["of_polygonizer"][stage].get<double> ();
+  EXPECT_GT (of_polygonizer, 0.0);
+  EXPECT_LE (of_polygonizer, report["seconds"]["polygonizer"]);
 }
 
 TEST_F (ErkpaReconstruct, TakesTheViewPointFromThePcdUnlessItIsGiven)
