@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "cell_mesher.h"
 
+#include "crease_turn.h"
 #include "grid_window.h"
 #include "loop_triangulation.h"
 #include "parallel_collect.h"
@@ -65,7 +66,7 @@ public:
         const CellEdge edge = cellEdge (edges_[i]);
         ring_[i] = window_.vertexOnEdge (cell + cornerOffset (edge.corner), edge.axis);
       }
-      if (hasSeveralSides ())
+      if (mayHaveCrease ())
         mesh.mixed_loops.push_back ({{ring_.begin (), ring_.begin () + size_}, edges_});
       else if (!triangulateRing (ring_.data (), size_, edges_, vertices_, mesh.triangles))
         mesh.centered_loops.push_back ({{ring_.begin (), ring_.begin () + size_}, edges_});
@@ -74,11 +75,18 @@ public:
   }
 
 private:
+  /** \brief Whether neighbours lie on different sides of sharp surfaces, and do not look the same way. */
   bool
-  hasSeveralSides () const
+  mayHaveCrease () const
   {
-    const auto key = [this] (int v) { return vertices_.side_keys[static_cast<std::size_t> (v)]; };
-    return std::any_of (ring_.begin (), ring_.begin () + size_, [&] (int v) { return key (v) != key (ring_[0]); });
+    for (std::size_t i = 0; i < size_; ++i)
+    {
+      const auto a = static_cast<std::size_t> (ring_[i]), b = static_cast<std::size_t> (ring_[(i + 1) % size_]);
+      if (vertices_.side_keys[a] != vertices_.side_keys[b] &&
+          creaseSign (vertices_.normals[a], vertices_.normals[b]) != CreaseSign::NONE)
+        return true;
+    }
+    return false;
   }
 
   /** \brief The sides of the loop in faces whose other cell has no surface. */

@@ -22,7 +22,7 @@ struct CellMesh
 {
   std::vector<std::array<int, 3>> triangles;
   std::vector<CellLoop> centered_loops; ///< need a vertex of their own inside the cell
-  std::vector<CellLoop> mixed_loops; ///< have vertices on several sides of sharp surfaces: there may be a crease inside
+  std::vector<CellLoop> mixed_loops; ///< have vertices on several sides of sharp surfaces, and may have a crease inside
   std::vector<int> border; ///< vertices of the sides beyond which the surface does not go on, each once or more
 };
 

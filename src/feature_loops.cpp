@@ -2,6 +2,7 @@
 #include "feature_loops.h"
 
 #include "crease_solver.h"
+#include "crease_turn.h"
 #include "plane_meeting.h"
 #include "threads.h"
 
@@ -24,7 +25,7 @@ public:
   LoopMesher (const ImplicitField &field, const PolygonizerOptions &options, double voxel,
               const SurfaceVertices &vertices)
       : options_ (options), voxel_ (voxel), vertices_ (vertices), local_ (field),
-        channels_ (static_cast<std::size_t> (field.points ().channels))
+        channels_ (static_cast<std::size_t> (field.points ().channels)), has_faces_ (field.faces () != nullptr)
   {
   }
 
@@ -56,7 +57,6 @@ public:
   }
 
 private:
-  static constexpr double LEAST_TURN = 0.07; // radians, 4 degrees: what turns less is no crease
   static constexpr double TOLERANCE = 1e-5;  // voxels
   static constexpr double REACH = 2.5;       // voxels that a vertex may be away from the middle of its loop
   static constexpr double NEAR = 1.0;        // voxels that few of them are
@@ -162,14 +162,13 @@ private:
   bool
   isCrease (int a, int b, const Eigen::Vector3d &around)
   {
-    constexpr double SMOOTH = 0.5, SHARP = 10.0; // of that turn: where the normals of the vertices say it already
-    const double turn = turnBetween (normalOf (a), normalOf (b));
-    if (turn < SMOOTH * LEAST_TURN || turn > SHARP * LEAST_TURN)
-      return turn > SHARP * LEAST_TURN;
+    const CreaseSign sign = creaseSign (normalOf (a), normalOf (b));
+    if (sign != CreaseSign::UNCLEAR)
+      return sign == CreaseSign::CLEAR;
     gatherOnce (around);
     const Eigen::Vector3d middle = 0.5 * (position (a) + position (b));
     const LocalSample one = local_.sampleOnSide (middle, sideOf (a)), other = local_.sampleOnSide (middle, sideOf (b));
-    return one.isDefined () && other.isDefined () && turnBetween (one.gradient, other.gradient) > LEAST_TURN;
+    return one.isDefined () && other.isDefined () && turnBetween (one.gradient, other.gradient) > LEAST_CREASE_TURN;
   }
 
   void
@@ -177,12 +176,6 @@ private:
   {
     if (!std::exchange (is_gathered_, true))
       local_.gather (around, NEAR * voxel_);
-  }
-
-  static double
-  turnBetween (const Eigen::Vector3d &a, const Eigen::Vector3d &b)
-  {
-    return std::atan2 (a.cross (b).norm (), a.dot (b));
   }
 
   /** \brief The point nearest to the tangent planes at the loop's vertices (Kobbelt et al. 2001). */
@@ -205,8 +198,9 @@ private:
   void
   describeCenter (MeshedLoop &result)
   {
-    const LocalSample sample = local_.sample (result.position);
-    result.border_offset = sample.border_offset;
+    if (has_faces_) // else what was last found on a side of the crease says the same
+      local_.sample (result.position);
+    result.border_offset = local_.borderOffset ();
     result.face = local_.face ();
     result.attributes.resize (channels_);
     if (channels_ > 0)
@@ -214,7 +208,7 @@ private:
     std::vector<Eigen::Vector3d> normals; // of the faces: several sides of sharp surfaces can be of one
     for (const Eigen::Vector3d &gradient : gradients_)
     {
-      const auto is_known = [&] (const Eigen::Vector3d &n) { return turnBetween (n, gradient) < LEAST_TURN; };
+      const auto is_known = [&] (const Eigen::Vector3d &n) { return turnBetween (n, gradient) < LEAST_CREASE_TURN; };
       if (gradient.norm () > 0.0 && std::none_of (normals.begin (), normals.end (), is_known))
         normals.push_back (gradient.normalized ());
     }
@@ -230,6 +224,7 @@ private:
   const SurfaceVertices &vertices_;
   LocalField local_;
   std::size_t channels_;
+  bool has_faces_;
   bool is_gathered_ = false;               // around the loop: most are where a sharp surface crosses a smooth one
   std::vector<int> sides_;                 // a vertex on each
   std::vector<Eigen::Vector3d> gradients_; // of the pieces of f on these sides where the crease was last found

@@ -215,6 +215,7 @@ LocalField::sampleOnSide (const Eigen::Vector3d &x, const Side &side)
   if ((unwarped - ball_center_).norm () > ball_extent_ || !support_.covers (unwarped))
     gatherUnwarped (unwarped, 0.0);
   result_ = FieldSample ();
+  has_face_centroid_ = false;
   bool in_reach = support_.select (unwarped);
   if (in_reach && selectGroups (unwarped))
   {

@@ -92,7 +92,7 @@ normalResidual (const OrientedPoints &points, std::size_t i, double spacing, con
 std::vector<std::size_t>
 spreadSample (std::size_t size)
 {
-  constexpr std::size_t COUNT = 2500;
+  constexpr std::size_t COUNT = 1200;
   const std::size_t step = std::max<std::size_t> (1, size / COUNT);
   std::vector<std::size_t> sample;
   for (std::size_t i = 0; i < size; i += step)

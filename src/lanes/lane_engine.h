@@ -7,10 +7,8 @@
 namespace erkpa::lanes
 {
 
-/** \brief Evaluates point after point, so many at once as there are lanes.
- * \tparam FitT LaneFit or LaneEnrichedFit
- */
-template <typename B, typename FitT>
+/** \brief Evaluates point after point, so many at once as there are lanes. */
+template <typename B>
 class LaneEngine
 {
 public:
@@ -20,30 +18,35 @@ public:
   {
   }
 
-  /** \param[in] make_fit (support, first point) makes the fit */
-  template <typename MakeFitT>
+  /** \param[in] take take (support, first point) makes the fit there and stores it */
+  template <typename TakeT>
   void
-  evaluate (MakeFitT make_fit) const
+  evaluate (TakeT take) const
   {
     for (std::size_t first = 0; first < points_.count; first += B::size)
-    {
-      const LaneSupport<B> support (settings_, nodes_, points_, first, scratch_);
-      FitT fit = make_fit (support, first);
-      const B nan (__builtin_nanf (""));
-      const B value = xsimd::select (fit.isDefined (), fit.value (), nan);
-      support.radius ().store_unaligned (samples_.radius + first);
-      value.store_unaligned (samples_.value + first);
-      const B one (1.0f), zero (0.0f);
-      const B near = xsimd::select (fit.reach ().isInReach (), one, zero);
-      B state = xsimd::select (fit.isDefined (), zero, one);
-      storeFit (fit, first);
-      if (settings_.gradients)
-        storeGradients (support, fit, first, state);
-      storeBytes (near, state, fit, first);
-    }
+      take (LaneSupport<B> (settings_, nodes_, points_, first, scratch_), first);
+  }
+
+  /** \brief Store what a fit, LaneFit or LaneEnrichedFit, says. */
+  template <typename FitT>
+  void
+  store (const LaneSupport<B> &support, FitT &fit, std::size_t first) const
+  {
+    const B nan (__builtin_nanf (""));
+    const B value = xsimd::select (fit.isDefined (), fit.value (), nan);
+    support.radius ().store_unaligned (samples_.radius + first);
+    value.store_unaligned (samples_.value + first);
+    const B one (1.0f), zero (0.0f);
+    const B near = xsimd::select (fit.reach ().isInReach (), one, zero);
+    B state = xsimd::select (fit.isDefined (), zero, one);
+    storeFit (fit, first);
+    if (settings_.gradients)
+      storeGradients (support, fit, first, state);
+    storeBytes (near, state, fit, first);
   }
 
 private:
+  template <typename FitT>
   void
   storeFit (const FitT &fit, std::size_t first) const
   {
@@ -57,6 +60,7 @@ private:
                                              first);
   }
 
+  template <typename FitT>
   void
   storeGradients (const LaneSupport<B> &support, FitT &fit, std::size_t first, B &state) const
   {
@@ -78,6 +82,7 @@ private:
     state = xsimd::select (fit.isUnsettled () && state < B (0.5f), B (2.0f), state);
   }
 
+  template <typename FitT>
   void
   storeBytes (B near, B state, const FitT &fit, std::size_t first) const
   {
@@ -94,15 +99,17 @@ private:
       if (samples_.nearest != nullptr)
         samples_.nearest[first + i] = static_cast<std::uint32_t> (nearest[i]);
     }
+    if (samples_.active != nullptr)
+      for (std::size_t i = 0; i < B::size; ++i)
+        samples_.active[first + i] = 0;
     if constexpr (FitT::IS_ENRICHED)
       storeActive (fit, first);
   }
 
+  template <typename FitT>
   void
   storeActive (const FitT &fit, std::size_t first) const
   {
-    for (std::size_t i = 0; i < B::size; ++i)
-      samples_.active[first + i] = 0;
     for (int s = 0; s < fit.kinks ().surfaces (); ++s)
     {
       float active[B::size];
@@ -124,9 +131,35 @@ void
 evaluateWith (const Settings &settings, const Nodes &nodes, const Points &points, const Scratch &scratch,
               const Samples &samples)
 {
-  using Fit = LaneFit<B, BASIS, CONSTRAINT, KernelT>;
-  LaneEngine<B, Fit> (settings, nodes, points, scratch, samples)
-      .evaluate ([&] (const LaneSupport<B> &support, std::size_t) { return Fit (settings, nodes, support); });
+  const LaneEngine<B> engine (settings, nodes, points, scratch, samples);
+  engine.evaluate (
+      [&] (const LaneSupport<B> &support, std::size_t first)
+      {
+        LaneFit<B, BASIS, CONSTRAINT, KernelT> fit (settings, nodes, support);
+        engine.store (support, fit, first);
+      });
+}
+
+template <typename B, Basis BASIS, template <typename> class KernelT>
+void
+evaluateEnriched (const Settings &settings, const Nodes &nodes, const Points &points, const SharpSurfaces &sharp,
+                  const Scratch &scratch, const Samples &samples)
+{
+  const LaneEngine<B> engine (settings, nodes, points, scratch, samples);
+  const auto take_with = [&] (auto fit, const LaneSupport<B> &support, std::size_t first)
+  { engine.store (support, fit, first); };
+  engine.evaluate (
+      [&] (const LaneSupport<B> &support, std::size_t first)
+      {
+        const LaneSurfaces<B> near (sharp, first, support.radius ());
+        if (near.count == 0)
+          take_with (LaneFit<B, BASIS, Constraint::HERMITE, KernelT> (settings, nodes, support), support, first);
+        else if (near.count == 1)
+          take_with (LaneEnrichedFit<B, BASIS, KernelT, 1> (settings, nodes, near, first, support), support, first);
+        else
+          take_with (LaneEnrichedFit<B, BASIS, KernelT, ANY_COUNT> (settings, nodes, near, first, support), support,
+                     first);
+      });
 }
 
 template <typename B, Basis BASIS>
@@ -134,10 +167,10 @@ void
 evaluateEnriched (const Settings &settings, const Nodes &nodes, const Points &points, const SharpSurfaces &sharp,
                   const Scratch &scratch, const Samples &samples)
 {
-  using Fit = LaneEnrichedFit<B, BASIS, AnyKernel>;
-  LaneEngine<B, Fit> (settings, nodes, points, scratch, samples)
-      .evaluate ([&] (const LaneSupport<B> &support, std::size_t first)
-                 { return Fit (settings, nodes, sharp, first, support); });
+  if (settings.kernel == Kernel::PAPER)
+    evaluateEnriched<B, BASIS, PaperKernel> (settings, nodes, points, sharp, scratch, samples);
+  else
+    evaluateEnriched<B, BASIS, AnyKernel> (settings, nodes, points, sharp, scratch, samples);
 }
 
 template <typename B, Basis BASIS, Constraint CONSTRAINT>

@@ -12,34 +12,35 @@ namespace erkpa::lanes
 
 /** \brief FieldFit with kinks in lanes, for the Hermite constraint: the terms of LaneKinks follow the polynomials. A
  * lane where a term does not count has zeros for it. All sums are taken in u = (x_i - x) / ε.
+ * \tparam COUNT of the sharp surfaces: see LaneKinks
  */
-template <typename B, Basis BASIS, template <typename> class KernelT>
+template <typename B, Basis BASIS, template <typename> class KernelT, int COUNT>
 class LaneEnrichedFit
 {
 public:
   using Mask = decltype (B () < B ());
+  using KinksT = LaneKinks<B, COUNT>;
   static constexpr int SIZE = Terms<B, BASIS>::SIZE;
   static constexpr bool IS_ENRICHED = true;
 
   /** \param[in] first place of the evaluation point in the first lane */
-  LaneEnrichedFit (const Settings &settings, const Nodes &nodes, const SharpSurfaces &sharp, std::size_t first,
+  LaneEnrichedFit (const Settings &settings, const Nodes &nodes, const LaneSurfaces<B> &near, std::size_t first,
                    const LaneSupport<B> &support)
       : nodes_ (nodes), support_ (support), weights_ (settings, nodes, support), scale_ (support.inverse ()),
-        reach_ (settings, support.radius (), support.squaredRadius ()), kinks_ (sharp, first, support.radius (), scale_),
-        size_ (SIZE + kinks_.terms ())
+        reach_ (settings, support.radius (), support.squaredRadius ()), kinks_ (near, first, scale_)
   {
     sumMoments ();
     TermsT::addGradientMoments (M_);
     weight_ = M_[0];
     kinks_.activate (weight_);
-    for (int j = 0; j < size_; ++j)
+    for (int j = 0; j < size (); ++j)
       at_x_[j] = j < SIZE ? B (j == 0 ? 1.0f : 0.0f) : kinks_.atPoint (j - SIZE);
-    for (int j = SIZE; j < size_; ++j)
+    for (int j = SIZE; j < size (); ++j)
       keep (j, kinks_.counts (j - SIZE));
     for (int a = 0; a < 3; ++a)
       centroid_[a] = M_[at (1 + a, 0)] / weight_;
     factorize ();
-    for (int j = 0; j < size_; ++j)
+    for (int j = 0; j < size (); ++j)
       c_[j] = b_[j];
     solve (c_);
   }
@@ -54,7 +55,7 @@ public:
   value () const
   {
     B sum = c_[0];
-    for (int j = SIZE; j < size_; ++j)
+    for (int j = SIZE; j < size (); ++j)
       sum = xsimd::fma (c_[j], at_x_[j], sum);
     return support_.radius () * sum;
   }
@@ -65,7 +66,7 @@ public:
     return reach_;
   }
 
-  const LaneKinks<B> &
+  const KinksT &
   kinks () const
   {
     return kinks_;
@@ -83,17 +84,17 @@ public:
   {
     for (int a = 0; a < 3; ++a)
       growth_[a] = B (2.0f) * radius_gradient[a];
-    for (int j = 0; j < size_; ++j)
+    for (int j = 0; j < size (); ++j)
       a_[j] = at_x_[j];
     solve (a_);
-    Change all, below[MAX_SURFACES], above[MAX_SURFACES];
+    Change all, below[KinksT::MAX_COUNT], above[KinksT::MAX_COUNT];
     B by_u[3] = {B (0.0f), B (0.0f), B (0.0f)}, by_radius (0.0f);
     for (std::size_t i = 0; i < support_.size (); ++i)
       addResidual (support_.node (i), by_u, by_radius, all, below, above);
     for (int a = 0; a < 3; ++a)
     {
       gradient[a] = xsimd::fma (growth_[a], by_radius, c_[1 + a] - by_u[a]);
-      for (int j = SIZE; j < size_; ++j)
+      for (int j = SIZE; j < size (); ++j)
         gradient[a] = xsimd::fma (c_[j], kinks_.slopeAtPoint (j - SIZE, a), gradient[a]);
       const B of_all = all.along (a, growth_);
       for (int s = 0; s < kinks_.surfaces (); ++s)
@@ -113,7 +114,7 @@ public:
   {
     constexpr float NEGLIGIBLE = 1e-5f;
     Mask unsettled = B (0.0f) > B (1.0f);
-    for (int j = 1; j < size_; ++j)
+    for (int j = 1; j < size (); ++j)
       unsettled = unsettled || xsimd::abs (a_[j] * c_[j] * raises_[j]) > B (NEGLIGIBLE);
     return unsettled;
   }
@@ -133,7 +134,7 @@ public:
 
 private:
   using TermsT = Terms<B, BASIS>;
-  static constexpr int MAX_SIZE = SIZE + LaneKinks<B>::MAX_TERMS;
+  static constexpr int MAX_SIZE = SIZE + KinksT::MAX_TERMS;
 
   /** \brief A sum of changes of weights with x: Σ w' u and Σ w' t², w' = dw/dt / t. */
   struct Change
@@ -157,6 +158,13 @@ private:
     }
   };
 
+  /** \brief Number of terms. */
+  int
+  size () const
+  {
+    return SIZE + kinks_.terms ();
+  }
+
   /** \brief Place of a surface's θ² among the terms. */
   int
   squareOf (int s) const
@@ -167,7 +175,7 @@ private:
   void
   sumMoments ()
   {
-    for (int j = 0; j < size_; ++j)
+    for (int j = 0; j < size (); ++j)
     {
       b_[j] = B (0.0f);
       for (int i = 0; i <= j; ++i)
@@ -189,20 +197,20 @@ private:
   void
   addNode (std::size_t node, B weight, const B *u)
   {
-    B n[3], R[MAX_SIZE], G[LaneKinks<B>::MAX_TERMS][3];
+    B n[3], R[MAX_SIZE], G[KinksT::MAX_TERMS][3];
     weights_.normal (node, n);
     TermsT::evaluate (u, dot (u, u), R);
     TermsT::addNormal (weight, u, n, b_);
     kinks_.evaluate (node, R + SIZE, G);
     const B height = weights_.lambda (node) * scale_;
-    for (int j = 0; j < size_; ++j)
+    for (int j = 0; j < size (); ++j)
     {
       const B wr = weight * R[j];
       for (int i = 0; i <= j; ++i)
         M_[at (j, i)] = xsimd::fma (wr, R[i], M_[at (j, i)]);
       b_[j] = xsimd::fma (wr, height, b_[j]);
     }
-    for (int e = 0; e < size_ - SIZE; ++e)
+    for (int e = 0; e < size () - SIZE; ++e)
       addSlopesOf (e, weight, u, n, G);
   }
 
@@ -232,7 +240,7 @@ private:
     const auto is_kept = counts > B (0.5f);
     for (int i = 0; i <= j; ++i)
       M_[at (j, i)] = xsimd::select (is_kept, M_[at (j, i)], B (0.0f));
-    for (int i = j + 1; i < size_; ++i)
+    for (int i = j + 1; i < size (); ++i)
       M_[at (i, j)] = xsimd::select (is_kept, M_[at (i, j)], B (0.0f));
     b_[j] = xsimd::select (is_kept, b_[j], B (0.0f));
     at_x_[j] = xsimd::select (is_kept, at_x_[j], B (0.0f));
@@ -242,19 +250,19 @@ private:
   void
   factorize ()
   {
-    for (int j = 0; j < size_; ++j)
+    for (int j = 0; j < size (); ++j)
     {
       raisePivot (j);
       if (j >= squareOf (0))
         M_[at (j, j)] += kinks_.fadeOf (j - squareOf (0));
       const B inverse = B (1.0f) / M_[at (j, j)];
-      for (int k = j + 1; k < size_; ++k)
+      for (int k = j + 1; k < size (); ++k)
       {
         const B factor = M_[at (k, j)] * inverse;
-        for (int i = k; i < size_; ++i)
+        for (int i = k; i < size (); ++i)
           M_[at (i, k)] = xsimd::fnma (M_[at (i, j)], factor, M_[at (i, k)]);
       }
-      for (int i = j + 1; i < size_; ++i)
+      for (int i = j + 1; i < size (); ++i)
         M_[at (i, j)] *= inverse;
     }
   }
@@ -276,13 +284,13 @@ private:
   void
   solve (B *v) const
   {
-    for (int j = 0; j < size_; ++j)
-      for (int i = j + 1; i < size_; ++i)
+    for (int j = 0; j < size (); ++j)
+      for (int i = j + 1; i < size (); ++i)
         v[i] = xsimd::fnma (M_[at (i, j)], v[j], v[i]);
-    for (int j = 0; j < size_; ++j)
+    for (int j = 0; j < size (); ++j)
       v[j] /= M_[at (j, j)];
-    for (int j = size_ - 2; j >= 0; --j)
-      for (int i = j + 1; i < size_; ++i)
+    for (int j = size () - 2; j >= 0; --j)
+      for (int i = j + 1; i < size (); ++i)
         v[j] = xsimd::fnma (M_[at (i, j)], v[i], v[j]);
   }
 
@@ -290,7 +298,7 @@ private:
   void
   addResidual (std::size_t node, B *by_u, B &by_radius, Change &all, Change *below, Change *above) const
   {
-    B u[3], squared, t, n[3], R[MAX_SIZE], G[LaneKinks<B>::MAX_TERMS][3];
+    B u[3], squared, t, n[3], R[MAX_SIZE], G[KinksT::MAX_TERMS][3];
     const B weight = weights_.weight (node, u, squared, t);
     weights_.normal (node, n);
     for (int a = 0; a < 3; ++a)
@@ -298,7 +306,7 @@ private:
     TermsT::evaluate (u, t * t, R);
     kinks_.evaluate (node, R + SIZE, G);
     B share (0.0f), residual = weights_.lambda (node) * scale_;
-    for (int j = 0; j < size_; ++j)
+    for (int j = 0; j < size (); ++j)
     {
       share = xsimd::fma (a_[j], R[j], share);
       residual = xsimd::fnma (c_[j], R[j], residual);
@@ -308,7 +316,7 @@ private:
     TermsT::slopes (c_, u, of_fit);
     for (int a = 0; a < 3; ++a)
     {
-      for (int e = 0; e < size_ - SIZE; ++e)
+      for (int e = 0; e < size () - SIZE; ++e)
       {
         of_shape[a] = xsimd::fma (a_[SIZE + e], G[e][a], of_shape[a]);
         of_fit[a] = xsimd::fma (c_[SIZE + e], G[e][a], of_fit[a]);
@@ -331,8 +339,7 @@ private:
   LaneWeights<B, KernelT> weights_;
   B scale_;
   LaneReach<B> reach_;
-  LaneKinks<B> kinks_;
-  int size_;
+  KinksT kinks_;
   B at_x_[MAX_SIZE]; // R(x)
   B M_[MAX_SIZE * (MAX_SIZE + 1) / 2], b_[MAX_SIZE], raises_[MAX_SIZE];
   B c_[MAX_SIZE], a_[MAX_SIZE]; // M^-1 b, M^-1 R(x)

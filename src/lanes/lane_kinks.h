@@ -8,48 +8,87 @@
 namespace erkpa::lanes
 {
 
-/** \brief The terms that sharp surfaces add, in lanes: for each a kink θH(θ), then for each three that meet in a corner
- * min (a⁺, b⁺), and after all of these each surface's θ².
- *
- * See Enrichment: a kink is seen from the side on which it is zero at x, where it may be; it counts where the support
- * holds nodes on either side of its surface; its square fades where few lie on one of them. A term's value at a node
- * and its slope are in coordinates u = (y - x) / ε, as θ / ε. Surfaces that pass by the supports of all lanes are left
- * out.
- */
+/** \brief Of the sharp surfaces near a ball those that may pass between the nodes of a lane's support. */
 template <typename B>
-class LaneKinks
+struct LaneSurfaces
 {
-public:
   static constexpr int MAX_CORNERS = static_cast<int> (SharpSurfaces::MAX_PENCILS);
-  static constexpr int MAX_TERMS = 2 * static_cast<int> (MAX_SURFACES) + MAX_CORNERS;
+
+  /** \brief The term of three surfaces that meet: min (scale_a a, scale_b b), where that is positive. */
+  struct Corner
+  {
+    int a, b, c;
+    float scale_a, scale_b;
+  };
+
+  int count = 0, corner_count = 0;
+  const Surface *surfaces[MAX_SURFACES];
+  int numbers[MAX_SURFACES]; ///< places among those that were given
+  Corner corners[MAX_CORNERS];
 
   /** \param[in] first place of the evaluation point in the first lane
-   * \param[in] radius,scale ε and 1 / ε
+   * \param[in] radius ε
    */
-  LaneKinks (const SharpSurfaces &sharp, std::size_t first, B radius, B scale) : scale_ (scale)
+  LaneSurfaces (const SharpSurfaces &sharp, std::size_t first, B radius)
   {
     int place[MAX_SURFACES]; // of a surface among those kept
     for (std::size_t s = 0; s < sharp.count; ++s)
     {
-      place[s] = passesSupport (sharp.surfaces[s], first, radius) ? count_ : -1;
+      place[s] = passesSupport (sharp.surfaces[s], first, radius) ? count : -1;
       if (place[s] < 0)
         continue;
-      surfaces_[count_] = &sharp.surfaces[s];
-      number_[count_++] = static_cast<int> (s);
+      surfaces[count] = &sharp.surfaces[s];
+      numbers[count++] = static_cast<int> (s);
     }
     for (std::size_t p = 0; p < sharp.pencil_count; ++p)
     {
       const Pencil &pencil = sharp.pencils[p];
       const int a = place[pencil.surfaces[0]], b = place[pencil.surfaces[1]], c = place[pencil.surfaces[2]];
       if (a >= 0 && b >= 0 && c >= 0)
-        corners_[corner_count_++] = {a, b, c, pencil.scale_a, pencil.scale_b};
+        corners[corner_count++] = {a, b, c, pencil.scale_a, pencil.scale_b};
     }
-    for (int s = 0; s < count_; ++s)
+  }
+
+private:
+  /** \brief θ of a reversible surface, a plane, is a distance. */
+  static bool
+  passesSupport (const Surface &surface, std::size_t first, B radius)
+  {
+    const B theta = B::load_unaligned (surface.theta_at + first);
+    return !surface.reversible || xsimd::any (xsimd::abs (theta) <= B (1.00001f) * radius);
+  }
+};
+
+/** \brief A number of sharp surfaces that is not known beforehand. */
+constexpr int ANY_COUNT = -1;
+
+/** \brief The terms that sharp surfaces add, in lanes: for each a kink θH(θ), then for each three that meet in a corner
+ * min (a⁺, b⁺), and after all of these each surface's θ².
+ *
+ * See Enrichment: a kink is seen from the side on which it is zero at x, where it may be; it counts where the support
+ * holds nodes on either side of its surface; its square fades where few lie on one of them. A term's value at a node
+ * and its slope are in coordinates u = (y - x) / ε, as θ / ε.
+ * \tparam COUNT so many surfaces, without corners: loops over them can be unrolled; or ANY_COUNT
+ */
+template <typename B, int COUNT>
+class LaneKinks
+{
+public:
+  static constexpr int MAX_COUNT = COUNT == ANY_COUNT ? static_cast<int> (MAX_SURFACES) : COUNT;
+  static constexpr int MAX_CORNERS = COUNT == ANY_COUNT ? LaneSurfaces<B>::MAX_CORNERS : 0;
+  static constexpr int MAX_TERMS = 2 * MAX_COUNT + MAX_CORNERS;
+
+  /** \param[in] first place of the evaluation point in the first lane
+   * \param[in] scale 1 / ε
+   */
+  LaneKinks (const LaneSurfaces<B> &near, std::size_t first, B scale) : near_ (near), scale_ (scale)
+  {
+    for (int s = 0; s < surfaces (); ++s)
     {
       below_[s] = above_[s] = B (0.0f);
       seeFrom (first, s);
     }
-    for (int k = 0; k < corner_count_; ++k)
+    for (int k = 0; k < corners (); ++k)
       seeCornerFrom (first, k);
   }
 
@@ -57,36 +96,36 @@ public:
   int
   surfaces () const
   {
-    return count_;
+    return COUNT == ANY_COUNT ? near_.count : COUNT;
   }
 
   /** \brief Place of a surface among those that were given. */
   int
   number (int surface) const
   {
-    return number_[surface];
+    return near_.numbers[surface];
   }
 
   int
   terms () const
   {
-    return 2 * count_ + corner_count_;
+    return 2 * surfaces () + corners ();
   }
 
   /** \brief Place of a surface's θ² among the terms. */
   int
   squareOf (int surface) const
   {
-    return count_ + corner_count_ + surface;
+    return surfaces () + corners () + surface;
   }
 
   /** \brief Values and slopes of the terms at a node. */
   void
   evaluate (std::size_t node, B *R, B (*G)[3]) const
   {
-    for (int s = 0; s < count_; ++s)
+    for (int s = 0; s < surfaces (); ++s)
     {
-      const Surface &surface = *surfaces_[s];
+      const Surface &surface = *near_.surfaces[s];
       const B theta = B (surface.theta[node]) * scale_, height = sign_[s] * theta, on = isOn (height, s);
       R[s] = on * height;
       R[squareOf (s)] = theta * theta;
@@ -97,8 +136,8 @@ public:
         G[squareOf (s)][a] = B (2.0f) * theta * g;
       }
     }
-    for (int k = 0; k < corner_count_; ++k)
-      evaluateCorner (node, k, R[count_ + k], G[count_ + k]);
+    for (int k = 0; k < corners (); ++k)
+      evaluateCorner (node, k, R[surfaces () + k], G[surfaces () + k]);
   }
 
   /** \brief Calls visit (surface, whether it is below) for the surfaces that a node is not on. */
@@ -106,8 +145,8 @@ public:
   void
   visitSides (std::size_t node, VisitT visit) const
   {
-    for (int s = 0; s < count_; ++s)
-      if (const float theta = surfaces_[s]->theta[node]; theta < 0.0f || theta > 0.0f)
+    for (int s = 0; s < surfaces (); ++s)
+      if (const float theta = near_.surfaces[s]->theta[node]; theta < 0.0f || theta > 0.0f)
         visit (s, theta < 0.0f);
   }
 
@@ -124,7 +163,7 @@ public:
   {
     const B zero (0.0f), one (1.0f);
     weight_ = total_weight;
-    for (int s = 0; s < count_; ++s)
+    for (int s = 0; s < surfaces (); ++s)
     {
       active_[s] = xsimd::select (below_[s] > zero && above_[s] > zero, one, zero);
       const B share = xsimd::min (balance (s) * B (1.0f / LEAST_BALANCE), one);
@@ -143,16 +182,16 @@ public:
   B
   counts (int term) const
   {
-    if (term < count_)
+    if (term < surfaces ())
       return active_[term];
     if (term < squareOf (0))
     {
-      const Corner &corner = corners_[term - count_];
+      const Corner &corner = near_.corners[term - surfaces ()];
       return active_[corner.a] * active_[corner.b] * active_[corner.c];
     }
     const int s = term - squareOf (0);
     const B zero (0.0f);
-    return surfaces_[s]->squared ? xsimd::select (presence_[s] > B (MIN_PRESENCE), active_[s], zero) : zero;
+    return near_.surfaces[s]->squared ? xsimd::select (presence_[s] > B (MIN_PRESENCE), active_[s], zero) : zero;
   }
 
   /** \brief A term's value at x. */
@@ -198,25 +237,18 @@ private:
 
   using Mask = decltype (B () < B ());
 
-  /** \brief The term of three surfaces that meet: min (scale_a a, scale_b b), where that is positive. */
-  struct Corner
-  {
-    int a, b, c;
-    float scale_a, scale_b;
-  };
+  using Corner = typename LaneSurfaces<B>::Corner;
 
-  /** \brief Whether a surface may pass between the nodes of a support; θ of a reversible one, a plane, is a distance. */
-  static bool
-  passesSupport (const Surface &surface, std::size_t first, B radius)
+  int
+  corners () const
   {
-    const B theta = B::load_unaligned (surface.theta_at + first);
-    return !surface.reversible || xsimd::any (xsimd::abs (theta) <= B (1.00001f) * radius);
+    return COUNT == ANY_COUNT ? near_.corner_count : 0;
   }
 
   void
   seeFrom (std::size_t first, int s)
   {
-    const Surface &surface = *surfaces_[s];
+    const Surface &surface = *near_.surfaces[s];
     const B theta = B::load_unaligned (surface.theta_at + first), one (1.0f), zero (0.0f);
     const auto holds_x = theta >= zero;
     sign_[s] = surface.reversible ? xsimd::select (holds_x, -one, one) : one;
@@ -235,8 +267,8 @@ private:
   void
   seeCornerFrom (std::size_t first, int k)
   {
-    const Corner &corner = corners_[k];
-    const Surface &a = *surfaces_[corner.a], &b = *surfaces_[corner.b];
+    const Corner &corner = near_.corners[k];
+    const Surface &a = *near_.surfaces[corner.a], &b = *near_.surfaces[corner.b];
     const B zero (0.0f), one (1.0f), height_a = B (corner.scale_a) * B::load_unaligned (a.theta_at + first),
             height_b = B (corner.scale_b) * B::load_unaligned (b.theta_at + first);
     const auto holds_x = height_a >= zero && height_b >= zero;
@@ -246,12 +278,12 @@ private:
     const B scale = sign * xsimd::select (is_b, B (corner.scale_b), B (corner.scale_a));
     const B height = sign * xsimd::select (is_b, height_b, height_a) * scale_;
     const auto is_on = height > zero || (height >= zero && scale > zero);
-    at_x_[count_ + k] = xsimd::select (is_on, height, zero);
+    at_x_[surfaces () + k] = xsimd::select (is_on, height, zero);
     for (int i = 0; i < 3; ++i)
     {
       const B slope = xsimd::select (is_b, B::load_unaligned (b.gradient_at[i] + first),
                                      B::load_unaligned (a.gradient_at[i] + first));
-      slope_at_x_[count_ + k][i] = xsimd::select (is_on, scale * slope, zero);
+      slope_at_x_[surfaces () + k][i] = xsimd::select (is_on, scale * slope, zero);
     }
   }
 
@@ -260,8 +292,8 @@ private:
   void
   evaluateCorner (std::size_t node, int k, B &value, B *gradient) const
   {
-    const Corner &corner = corners_[k];
-    const Surface &a = *surfaces_[corner.a], &b = *surfaces_[corner.b], &c = *surfaces_[corner.c];
+    const Corner &corner = near_.corners[k];
+    const Surface &a = *near_.surfaces[corner.a], &b = *near_.surfaces[corner.b], &c = *near_.surfaces[corner.c];
     float turn = 0.0f;
     for (int i = 0; i < 3; ++i)
       turn += (corner.scale_a * a.gradient[i][node] - corner.scale_b * b.gradient[i][node]) * c.gradient[i][node];
@@ -306,14 +338,11 @@ private:
     return xsimd::max (presence_[s], B (MIN_PRESENCE));
   }
 
+  const LaneSurfaces<B> &near_;
   B scale_;
-  int count_ = 0, corner_count_ = 0;
-  const Surface *surfaces_[MAX_SURFACES];
-  int number_[MAX_SURFACES];
-  Corner corners_[MAX_CORNERS];
-  Mask is_behind_[MAX_CORNERS]; // where a corner is seen from
-  B sign_[MAX_SURFACES], open_[MAX_SURFACES]; // of θ; 1 where the kink is zero on the surface itself
-  B below_[MAX_SURFACES], above_[MAX_SURFACES], presence_[MAX_SURFACES], active_[MAX_SURFACES];
+  B sign_[MAX_COUNT], open_[MAX_COUNT]; // of θ; 1 where the kink is zero on the surface itself
+  B below_[MAX_COUNT], above_[MAX_COUNT], presence_[MAX_COUNT], active_[MAX_COUNT];
+  Mask is_behind_[MAX_CORNERS + 1]; // where a corner is seen from
   B at_x_[MAX_TERMS], slope_at_x_[MAX_TERMS][3];
   B weight_;
 };
