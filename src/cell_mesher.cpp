@@ -83,7 +83,7 @@ private:
     {
       const auto a = static_cast<std::size_t> (ring_[i]), b = static_cast<std::size_t> (ring_[(i + 1) % size_]);
       if (vertices_.side_keys[a] != vertices_.side_keys[b] &&
-          creaseSign (vertices_.normals[a], vertices_.normals[b]) != CreaseSign::NONE)
+          mayCrease (vertices_.normals[a], vertices_.normals[b]))
         return true;
     }
     return false;

@@ -212,11 +212,9 @@ private:
     if (loops_.empty () && vertices_.found.empty ())
       return false;
     const auto owner_of = [&] (std::size_t t) { return t < before_loops_ ? -1 : owners_[t - before_loops_]; };
-    const auto is_outside = [this] (int v) { return isMoved (v) || isExtra (v); };
-    std::vector<int> suspects;
-    for (std::size_t t = vertices_.found.empty () ? before_loops_ : 0; t < triangles_.size (); ++t)
-      if (owner_of (t) >= 0 || std::any_of (triangles_[t].begin (), triangles_[t].end (), is_outside))
-        suspects.push_back (static_cast<int> (t));
+    const std::vector<int> suspects = findSuspects ();
+    if (suspects.empty ())
+      return false;
     std::set<int> touched; // one change in a place at a time: it may be enough
     const auto is_touched = [&touched] (int v) { return touched.count (v) > 0; };
     for (const auto &[one, other] : findIntersections (vertices_.positions, triangles_, suspects, voxel_, threads_))
@@ -232,6 +230,46 @@ private:
       touched.insert (second.begin (), second.end ());
     }
     return !touched.empty ();
+  }
+
+  /** \brief Triangles with vertices outside of the cells they were found for. */
+  std::vector<int>
+  findSuspects () const
+  {
+    std::vector<char> is_outside (vertices_.positions.size (), 0);
+    for (std::size_t v = 0; v < vertices_.found.size (); ++v)
+      is_outside[v] = vertices_.found[v] != vertices_.positions[v] ? 1 : 0;
+    for (std::size_t i = 0; i < loops_.size (); ++i)
+      if (on_crease_[i] && !isInsideCell (i))
+        is_outside[static_cast<std::size_t> (centers_[i])] = 1;
+    std::vector<int> suspects;
+    for (std::size_t t = vertices_.found.empty () ? before_loops_ : 0; t < triangles_.size (); ++t)
+      if (std::any_of (triangles_[t].begin (), triangles_[t].end (),
+                       [&] (int v) { return is_outside[static_cast<std::size_t> (v)] != 0; }))
+        suspects.push_back (static_cast<int> (t));
+    return suspects;
+  }
+
+  /** \brief Whether the crease vertex of a loop lies in its cell, as the places of the ring on the cell's edges say. */
+  bool
+  isInsideCell (std::size_t loop) const
+  {
+    const CellLoop &of = loops_[loop];
+    const Eigen::Vector3d &center = vertices_.positions[static_cast<std::size_t> (centers_[loop])];
+    for (std::size_t i = 0; i < of.ring.size (); ++i)
+    {
+      const CellEdge edge = cellEdge (of.edges[i]);
+      const auto v = static_cast<std::size_t> (of.ring[i]);
+      const Eigen::Vector3d &place = v < vertices_.found.size () ? vertices_.found[v] : vertices_.positions[v];
+      for (int axis = 0; axis < 3; ++axis)
+        if (axis != edge.axis)
+        {
+          const double from_low = center[axis] - place[axis] + ((edge.corner >> axis & 1) != 0 ? voxel_ : 0.0);
+          if (from_low < 0.0 || from_low > voxel_)
+            return false;
+        }
+    }
+    return true;
   }
 
   /** \brief Appends the triangles of all loops, and for now no more than the positions of vertices in their middles. */
@@ -273,13 +311,6 @@ private:
       vertices_.positions.push_back (middleOf (loops_[i].ring));
     }
     owners_.resize (triangles_.size () - before_loops_, -1);
-  }
-
-  /** \brief Whether a vertex is there by its position only. */
-  bool
-  isExtra (int v) const
-  {
-    return static_cast<std::size_t> (v) >= vertices_.normals.size ();
   }
 
   /** \brief Whether a vertex of a thin wall was moved from the edge of the grid it was found on. */

@@ -17,14 +17,16 @@ moveToCrease (LocalField &local, const std::vector<Side> &sides, double iso, dou
   const Eigen::Vector3d start = x;
   if (gradients_there != nullptr)
     gradients_there->resize (sides.size ());
+  std::vector<LocalSample> samples;
   double squares = 0.0; // of the values
   for (int step = 0; step < STEPS; ++step)
   {
     PlaneMeeting meeting;
     squares = 0.0;
+    local.sampleOnSides (x, sides, samples);
     for (std::size_t i = 0; i < sides.size (); ++i)
     {
-      const LocalSample sample = local.sampleOnSide (x, sides[i]);
+      const LocalSample &sample = samples[i];
       if (!sample.isDefined ())
         return false;
       meeting.add (sample.gradient, iso - sample.value);

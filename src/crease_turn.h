@@ -18,20 +18,13 @@ turnBetween (const Eigen::Vector3d &a, const Eigen::Vector3d &b)
   return std::atan2 (a.cross (b).norm (), a.dot (b));
 }
 
-/** \brief What the normals of vertices on different sides of a sharp surface say about a crease between them. */
-enum class CreaseSign
+/** \brief Whether there may be a crease between vertices on different sides of a sharp surface, by their normals: a round
+ * edge turns, too. */
+inline bool
+mayCrease (const Eigen::Vector3d &normal, const Eigen::Vector3d &other)
 {
-  NONE,
-  UNCLEAR, ///< the field has to be asked
-  CLEAR
-};
-
-inline CreaseSign
-creaseSign (const Eigen::Vector3d &normal, const Eigen::Vector3d &other)
-{
-  constexpr double SMOOTH = 0.5 * LEAST_CREASE_TURN, SHARP = 10.0 * LEAST_CREASE_TURN;
-  const double turn = turnBetween (normal, other);
-  return turn < SMOOTH ? CreaseSign::NONE : turn > SHARP ? CreaseSign::CLEAR : CreaseSign::UNCLEAR;
+  constexpr double SMOOTH = 0.5; // of the least turn
+  return turnBetween (normal, other) >= SMOOTH * LEAST_CREASE_TURN;
 }
 
 } // namespace erkpa

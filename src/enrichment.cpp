@@ -133,6 +133,7 @@ void
 Enrichment::select (const Support &support, const Eigen::Vector3d &x)
 {
   terms_.clear ();
+  is_continued_ = false;
   if (near_count_ == 0)
     return;
   position_ = x + field_.points ().origin;
@@ -175,8 +176,15 @@ Enrichment::activate (NearSurface &near, const Support &support)
   if (!near.active)
     return;
   surface.evaluate (position_, near.at_point.value, near.at_point.gradient);
-  if (place_ != nullptr)
-    near.at_place = surface.theta (*place_);
+}
+
+void
+Enrichment::lookFrom (const Eigen::Vector3d *place)
+{
+  is_continued_ = place != nullptr;
+  for (std::size_t i = 0; i < near_count_ && is_continued_; ++i)
+    if (near_[i].active)
+      near_[i].at_place = surfaceOf (near_[i]).theta (*place);
 }
 
 double

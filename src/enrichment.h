@@ -45,14 +45,11 @@ public:
   void
   select (const Support &support, const Eigen::Vector3d &x);
 
-  /** \brief See the next evaluation points from the side of every sharp surface on which \a place lies (in the input's
-   * frame): the terms go on smoothly beyond Γ. Null: from where they are.
+  /** \brief See the evaluation point from the side of every sharp surface on which \a place lies (in the input's frame):
+   * the terms go on smoothly beyond Γ. Null, and after select (): from where it is.
    */
   void
-  lookFrom (const Eigen::Vector3d *place)
-  {
-    place_ = place;
-  }
+  lookFrom (const Eigen::Vector3d *place);
 
   /** \brief A number that says on which side of every active surface the evaluation point lies; 0 where none is active.
    */
@@ -204,7 +201,7 @@ private:
   std::vector<NearSurface> near_;
   std::size_t near_count_ = 0; // near_ keeps its memory from ball to ball
   std::vector<Term> terms_;
-  const Eigen::Vector3d *place_ = nullptr;              // looked at from; null: from the point itself
+  bool is_continued_ = false;                           // looked at from another place
   Eigen::Vector3d position_ = Eigen::Vector3d::Zero (); // selected for, in the input's frame
   double total_weight_ = 0.0;                           // of the support's nodes
 };

@@ -61,7 +61,7 @@ void
 Enrichment::atPoint (int term, double radius, double &value, Eigen::Vector3d &gradient) const
 {
   const Term &t = terms_[static_cast<std::size_t> (term)];
-  if (place_ != nullptr && !t.is_square)
+  if (is_continued_ && !t.is_square)
   {
     continueToPoint (t, radius, value, gradient);
     return;

@@ -162,12 +162,13 @@ private:
   bool
   isCrease (int a, int b, const Eigen::Vector3d &around)
   {
-    const CreaseSign sign = creaseSign (normalOf (a), normalOf (b));
-    if (sign != CreaseSign::UNCLEAR)
-      return sign == CreaseSign::CLEAR;
+    if (!mayCrease (normalOf (a), normalOf (b)))
+      return false;
     gatherOnce (around);
     const Eigen::Vector3d middle = 0.5 * (position (a) + position (b));
-    const LocalSample one = local_.sampleOnSide (middle, sideOf (a)), other = local_.sampleOnSide (middle, sideOf (b));
+    std::vector<LocalSample> samples;
+    local_.sampleOnSides (middle, {sideOf (a), sideOf (b)}, samples, LocalField::Slope::OF_THE_FIT);
+    const LocalSample &one = samples.front (), &other = samples.back ();
     return one.isDefined () && other.isDefined () && turnBetween (one.gradient, other.gradient) > LEAST_CREASE_TURN;
   }
 

@@ -45,6 +45,13 @@ public:
     setFloors ();
     setFades ();
     system_.factorize (floors_, fades_);
+    lookAgain ();
+  }
+
+  /** \brief Take up that the enrichment looks at x from another side. */
+  void
+  lookAgain ()
+  {
     evaluateTermsAtCenter ();
     shape_ = system_.solve (R_);
   }

@@ -208,31 +208,65 @@ LocalField::evaluateFaces (const Eigen::Vector3d &x, Task task)
 LocalSample
 LocalField::sampleOnSide (const Eigen::Vector3d &x, const Side &side)
 {
-  LocalSample sample;
-  Eigen::Vector3d unwarped = x, place = side.place;
-  if (warp_ != nullptr && (!unwarp (side.place, place) || !unwarp (x, unwarped)))
-    return sample;
+  std::vector<LocalSample> samples;
+  sampleOnSides (x, {side}, samples);
+  return samples.front ();
+}
+
+void
+LocalField::sampleOnSides (const Eigen::Vector3d &x, const std::vector<Side> &sides, std::vector<LocalSample> &samples,
+                           Slope slope)
+{
+  samples.assign (sides.size (), LocalSample ());
+  Eigen::Vector3d unwarped = x;
+  if (warp_ != nullptr && !unwarp (x, unwarped))
+    return;
+  const Eigen::Matrix3d unwarping = unwarping_;
   if ((unwarped - ball_center_).norm () > ball_extent_ || !support_.covers (unwarped))
     gatherUnwarped (unwarped, 0.0);
-  result_ = FieldSample ();
   has_face_centroid_ = false;
-  bool in_reach = support_.select (unwarped);
-  if (in_reach && selectGroups (unwarped))
+  if (!support_.select (unwarped))
+    return;
+  const bool has_faces = selectGroups (unwarped);
+  std::vector<char> is_done (sides.size (), 0);
+  for (std::size_t i = 0; i < sides.size (); ++i)
   {
-    const int group = groups_.groupOf (side.face);
-    in_reach = group >= 0 && support_.selectPart (unwarped, groups_.groupsOfSlots (), group);
+    const int group = has_faces ? groups_.groupOf (sides[i].face) : -1;
+    std::vector<std::size_t> of;
+    places_.clear ();
+    for (std::size_t j = i; j < sides.size (); ++j)
+    {
+      Eigen::Vector3d place = sides[j].place;
+      if (is_done[j] || (has_faces && (group < 0 || groups_.groupOf (sides[j].face) != group)))
+        continue;
+      is_done[j] = 1;
+      if (warp_ != nullptr && !unwarp (sides[j].place, place))
+        continue;
+      of.push_back (j);
+      places_.push_back (place + field_.points ().origin);
+    }
+    unwarping_ = unwarping; // of x
+    sampleTogether (unwarped, group, of, slope == Slope::EXACT ? Task::SIDES : Task::SLOPES_OF_SIDES, samples);
   }
-  place += field_.points ().origin;
-  enrichment_.lookFrom (&place);
-  const bool is_defined = in_reach && fitSelected (unwarped, Task::GRADIENT);
-  enrichment_.lookFrom (nullptr);
-  if (!is_defined)
-    return sample;
-  static_cast<FieldSample &> (sample) = result_;
-  sample.radius = support_.radius ();
-  if (warp_ != nullptr)
-    sample.gradient = unwarping_.transpose () * sample.gradient;
-  return sample;
+}
+
+void
+LocalField::sampleTogether (const Eigen::Vector3d &x, int group, const std::vector<std::size_t> &of, Task task,
+                            std::vector<LocalSample> &samples)
+{
+  result_ = FieldSample ();
+  side_results_.clear ();
+  if (of.empty () || (group >= 0 && !support_.selectPart (x, groups_.groupsOfSlots (), group)))
+    return;
+  fitSelected (x, task);
+  for (std::size_t i = 0; i < side_results_.size (); ++i)
+  {
+    LocalSample &sample = samples[of[i]];
+    static_cast<FieldSample &> (sample) = side_results_[i];
+    sample.radius = support_.radius ();
+    if (warp_ != nullptr)
+      sample.gradient = unwarping_.transpose () * sample.gradient;
+  }
 }
 
 int
@@ -305,6 +339,18 @@ void
 LocalField::fitWith (Task task)
 {
   FieldFit<BasisT, Size, MaxSize> fit (field_.points (), field_.options ().constraint, support_, enrichment_);
+  if (task == Task::SIDES || task == Task::SLOPES_OF_SIDES)
+  {
+    for (const Eigen::Vector3d &place : places_)
+    {
+      enrichment_.lookFrom (&place);
+      fit.lookAgain ();
+      result_.gradient = task == Task::SIDES ? fit.gradient () : fit.slope ();
+      result_.value = fit.value ();
+      side_results_.push_back (result_);
+    }
+    return;
+  }
   result_.value = fit.value ();
   if (task == Task::HEIGHTS)
   {

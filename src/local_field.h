@@ -70,6 +70,18 @@ public:
   LocalSample
   sampleOnSide (const Eigen::Vector3d &x, const Side &side);
 
+  /** \brief What is wanted as the gradient. */
+  enum class Slope
+  {
+    EXACT,    ///< ∇f
+    OF_THE_FIT ///< its coefficients held, as if the weights did not change with x: quicker, and tells edges as well
+  };
+
+  /** \brief The same for several sides, of which those with the same face share a fit. */
+  void
+  sampleOnSides (const Eigen::Vector3d &x, const std::vector<Side> &sides, std::vector<LocalSample> &samples,
+                 Slope slope = Slope::EXACT);
+
   /** \brief The sharp surface that cuts the crease at x: its place in the field's options; -1 where there is none. */
   int
   sharpSurfaceAt (const Eigen::Vector3d &x);
@@ -161,6 +173,8 @@ private:
     VALUE,
     HEIGHTS, ///< the value, and what the fit says at the voters
     GRADIENT,
+    SIDES, ///< value and gradient, seen from each of several places
+    SLOPES_OF_SIDES,
     SHAPE_FUNCTIONS
   };
 
@@ -202,6 +216,14 @@ private:
   bool
   unwarp (const Eigen::Vector3d &x, Eigen::Vector3d &unwarped);
 
+  /** \brief What sides that share a face say.
+   * \param[in] group of the nodes around x; < 0: all of them
+   * \param[in] of places in \a samples
+   */
+  void
+  sampleTogether (const Eigen::Vector3d &x, int group, const std::vector<std::size_t> &of, Task task,
+                  std::vector<LocalSample> &samples);
+
   template <typename BasisT>
   void
   fit (Task task);
@@ -242,6 +264,8 @@ private:
   int face_ = -1;
   std::uint64_t side_key_ = 0;
   FieldSample result_;
+  std::vector<Eigen::Vector3d> places_;   // that sides are seen from, in the input's frame, before the warp
+  std::vector<FieldSample> side_results_; // from there
   std::vector<ShapeFunction> shape_functions_;
   std::size_t evaluations_ = 0, support_nodes_ = 0;
 };

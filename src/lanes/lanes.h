@@ -84,7 +84,7 @@ struct Points
 };
 
 /** \brief At most so many sharp surfaces enrich the points of one call. */
-constexpr std::size_t MAX_SURFACES = 4;
+constexpr std::size_t MAX_SURFACES = 6;
 
 /** \brief A sharp surface that is in force everywhere, and θ and ∇θ of it. */
 struct Surface
