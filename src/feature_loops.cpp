@@ -25,7 +25,7 @@ public:
   LoopMesher (const ImplicitField &field, const PolygonizerOptions &options, double voxel,
               const SurfaceVertices &vertices)
       : options_ (options), voxel_ (voxel), vertices_ (vertices), local_ (field),
-        channels_ (static_cast<std::size_t> (field.points ().channels)), has_faces_ (field.faces () != nullptr)
+        channels_ (static_cast<std::size_t> (field.points ().channels))
   {
   }
 
@@ -199,9 +199,8 @@ private:
   void
   describeCenter (MeshedLoop &result)
   {
-    if (has_faces_) // else what was last found on a side of the crease says the same
-      local_.sample (result.position);
-    result.border_offset = local_.borderOffset ();
+    const LocalSample sample = local_.sample (result.position);
+    result.border_offset = sample.border_offset;
     result.face = local_.face ();
     result.attributes.resize (channels_);
     if (channels_ > 0)
@@ -225,7 +224,6 @@ private:
   const SurfaceVertices &vertices_;
   LocalField local_;
   std::size_t channels_;
-  bool has_faces_;
   bool is_gathered_ = false;               // around the loop: most are where a sharp surface crosses a smooth one
   std::vector<int> sides_;                 // a vertex on each
   std::vector<Eigen::Vector3d> gradients_; // of the pieces of f on these sides where the crease was last found

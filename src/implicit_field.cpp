@@ -52,22 +52,22 @@ checkSupport (const FieldOptions &options)
 } // namespace
 
 ImplicitField::ImplicitField (std::shared_ptr<const OrientedPoints> points, NeighborSearch::ConstPtr search,
-                              const FieldOptions &options, int threads)
+                              const FieldOptions &options, int threads, PointLayout::ConstPtr layout)
     : points_ (std::move (points)), search_ (std::move (search)), options_ (options), kernel_ (kernelOf (options))
 {
   if (options_.order == Order::AUTOMATIC)
     options_.order = options_.constraint == Constraint::FUNCTIONAL ? Order::LINEAR : Order::SPHERICAL;
-  double spacing = 0.0;
-  const std::shared_ptr<const PointGrid> grid = makePointGrid (points_->positions, threads, spacing);
-  grid_search_ = makeGridSearch (grid);
-  const int k = chooseSupportSize (*points_, *grid_search_, threads);
+  if (!layout)
+    layout = std::make_shared<const PointLayout> (*points_, threads);
+  const double spacing = layout->spacing;
+  grid_search_ = layout->search;
   if (options_.k == 0 && SupportSize::kindOf (*points_, options_) == SupportSize::Kind::NEAREST)
-    options_.k = k;
+    options_.k = layout->k;
   support_size_ = std::make_shared<const SupportSize> (*points_, options_, spacing);
   warpPositions ();
   spacing_ = options_.warp ? measureSpacing (warped_positions_, *warped_search_, threads) : spacing;
   typical_radius_ = support_size_->typical () * (options_.warp && spacing > 0.0 ? spacing_ / spacing : 1.0);
-  feature_size_ = spacing_ * std::sqrt (static_cast<double> (k) / CLEAN_SUPPORT);
+  feature_size_ = spacing_ * std::sqrt (static_cast<double> (layout->k) / CLEAN_SUPPORT);
   for (std::size_t i = 0; i < options_.sharp_surfaces.size (); ++i)
     if (!separatesFaces (*options_.sharp_surfaces[i]))
     {
@@ -76,7 +76,7 @@ ImplicitField::ImplicitField (std::shared_ptr<const OrientedPoints> points, Neig
     }
   pencils_ = std::make_shared<const std::vector<Pencil>> (findPencils (enriching_, spacing));
   faces_ = FaceMap::make (*points_, *grid_search_, options_.sharp_surfaces, spacing, threads);
-  node_table_ = std::make_shared<const NodeTable> (*points_, grid, threads);
+  node_table_ = std::make_shared<const NodeTable> (*points_, layout->grid, threads);
   if (options_.constraint != Constraint::OFFSURFACE)
     return;
   offsets_ = support_size_->radiiOfNodes (*search_, threads);

@@ -224,7 +224,6 @@ LocalField::sampleOnSides (const Eigen::Vector3d &x, const std::vector<Side> &si
   const Eigen::Matrix3d unwarping = unwarping_;
   if ((unwarped - ball_center_).norm () > ball_extent_ || !support_.covers (unwarped))
     gatherUnwarped (unwarped, 0.0);
-  has_face_centroid_ = false;
   if (!support_.select (unwarped))
     return;
   const bool has_faces = selectGroups (unwarped);

@@ -118,10 +118,6 @@ public:
     return runs_out_ ? 0.0 : centroid ().norm ();
   }
 
-  /** \brief How far they lie aside of it along the surface, on whichever face its gradient was asked for. */
-  double
-  borderOffset () const;
-
   /** \brief A number that differs between the two sides of a crease. */
   std::uint64_t
   sideKey () const
@@ -242,6 +238,9 @@ private:
   {
     return has_face_centroid_ ? face_centroid_ : supportCentroid ();
   }
+
+  double
+  borderOffset () const;
 
   const ImplicitField &field_;
   const SpaceWarp *warp_; // null: none

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <erkpa/normals.h>
 
-#include "noise.h"
 #include "normal_orientation.h"
 #include "normal_sharpening.h"
 #include "normal_smoothing.h"
@@ -43,12 +42,12 @@ fitPlanes (const OrientedPoints &points, int k, const Eigen::Vector3f &view_poin
 } // namespace
 
 Outcome
-estimateNormals (OrientedPoints &points, const NeighborSearch &search, const NormalOptions &options,
+estimateNormals (OrientedPoints &points, const PointLayout &layout, const NormalOptions &options,
                  Orientation &orientation)
 {
   if (options.k != 0 && options.k < 3)
     return {Status::INVALID_SETTING, "normals need at least 3 neighbours, or 0 for automatic"};
-  const int k = options.k > 0 ? options.k : chooseSupportSize (points, search, options.threads);
+  const int k = options.k > 0 ? options.k : layout.k;
   const Eigen::Vector3f view_point = (options.view_point - points.origin).cast<float> ();
   std::vector<Eigen::Vector3f> estimated = fitPlanes (points, k, view_point, options.threads);
   for (std::size_t i = 0; i < points.size (); ++i)
@@ -58,24 +57,24 @@ estimateNormals (OrientedPoints &points, const NeighborSearch &search, const Nor
     else if (!estimated[i].allFinite ())
       return {Status::NO_NORMALS, "normals could not be estimated at some points: give normals with the input"};
   }
-  orientation = orientNormals (points, search, k, options, estimated);
+  orientation = orientNormals (points, *layout.search, k, options, estimated);
   points.normals.swap (estimated);
   return {};
 }
 
 RefinedNormals
-refineNormals (const NeighborSearch &search, bool estimated, int threads, OrientedPoints &points)
+refineNormals (const PointLayout &layout, bool estimated, int threads, OrientedPoints &points)
 {
   constexpr double NOISY = 4.5;          // degrees
   constexpr double NOISY_POSITION = 0.1; // spacings
   constexpr int PASSES = 3, NEIGHBORS = 24;
   constexpr double SIGMA = 25.0; // degrees
-  const int k = chooseSupportSize (points, search, threads);
-  const double spacing = measureSpacing (points.positions, search, threads);
+  const NeighborSearch &search = *layout.search;
+  const double spacing = layout.spacing;
   RefinedNormals refined;
   if (!(spacing > 0.0))
     return refined;
-  NormalScale scale{spacing, positionNoise (search, spacing, threads, points), k};
+  NormalScale scale{spacing, positionNoise (search, spacing, threads, points), layout.k};
   refined.sharpened = estimated || areNormalsSmeared (search, scale, threads, points);
   if (refined.sharpened)
   {

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <erkpa/reconstruction.h>
 
-#include "node_table.h"
 #include "stage_clock.h"
 #include "support.h"
 #include "support_size.h"
@@ -20,7 +19,7 @@ namespace
 
 Outcome
 collect (const PointView &view, const SearchFactory &make_search, int threads, OrientedPoints &points,
-         NeighborSearch::ConstPtr &search, Report &report)
+         NeighborSearch::ConstPtr &search, PointLayout::ConstPtr &layout, Report &report)
 {
   const StageClock clock (report.seconds_points);
   Outcome outcome = collectPoints (view, points, report.points, threads);
@@ -32,6 +31,7 @@ collect (const PointView &view, const SearchFactory &make_search, int threads, O
                                         (report.points.no_confidence > 0 ? " that have a positive confidence" : "") +
                                         ": a surface needs at least " + std::to_string (Support::MIN_NODES + 1)};
   search = make_search ? make_search (points) : makeKdTreeSearch (points.positions);
+  layout = std::make_shared<const PointLayout> (points, threads);
   return {};
 }
 
@@ -95,13 +95,14 @@ checkWarp (const OrientedPoints &points, const SpaceWarp *warp)
 /** \brief The field over points with normals. */
 Outcome
 makeField (const std::shared_ptr<const OrientedPoints> &points, const NeighborSearch::ConstPtr &search,
-           const Options &options, ImplicitField::ConstPtr &field, Report &report, const ProgressCallback &progress)
+           const PointLayout::ConstPtr &layout, const Options &options, ImplicitField::ConstPtr &field, Report &report,
+           const ProgressCallback &progress)
 {
   const StageClock clock (report.seconds_field);
   Outcome outcome = checkWarp (*points, options.field.warp.get ());
   if (!outcome.ok ())
     return outcome;
-  const auto made = std::make_shared<ImplicitField> (points, search, options.field, options.polygonizer.threads);
+  const auto made = std::make_shared<ImplicitField> (points, search, options.field, options.polygonizer.threads, layout);
   const bool by_nearest = made->options ().k > 0;
   report.k = by_nearest ? made->options ().k : 0;
   report.radius = by_nearest ? 0.0 : made->supportSize ().typical ();
@@ -116,7 +117,7 @@ makeField (const std::shared_ptr<const OrientedPoints> &points, const NeighborSe
 
 /** \brief Where sharp edges are known or sought, normals must be those of one face each; then find the edges. */
 Outcome
-respectSharpEdges (const NeighborSearch &search, Options &options, OrientedPoints &points, Report &report)
+respectSharpEdges (const PointLayout &layout, Options &options, OrientedPoints &points, Report &report)
 {
   std::vector<SharpSurface::ConstPtr> &surfaces = options.field.sharp_surfaces;
   const SharpOptions &sharp = options.sharp;
@@ -125,13 +126,13 @@ respectSharpEdges (const NeighborSearch &search, Options &options, OrientedPoint
   if (options.normals.sharpen)
   {
     const StageClock clock (report.seconds_normals);
-    report.normals = refineNormals (search, report.points.without_normal > 0, threads, points);
+    report.normals = refineNormals (layout, report.points.without_normal > 0, threads, points);
   }
   const StageClock clock (report.seconds_sharp);
   std::vector<SharpSurface::ConstPtr> found, between;
   Outcome outcome;
   if (sharp.automatic)
-    outcome = findSharpSurfaces (points, search, sharp, threads, found);
+    outcome = findSharpSurfaces (points, layout, sharp, threads, found);
   if (outcome.ok () && !sharp.faces.empty ())
     outcome = sharpEdgesFromFaces (points, sharp.faces, sharp.face_tolerance, between);
   // Faces are told apart by smoothed normals, fitted by those given: fits average noise without looking over edges.
@@ -145,22 +146,20 @@ respectSharpEdges (const NeighborSearch &search, Options &options, OrientedPoint
 
 /** \brief Estimate the normals that are missing, and see to it that they respect sharp edges. */
 Outcome
-prepareNormals (Options &options, OrientedPoints &points, Report &report)
+prepareNormals (const PointLayout &layout, Options &options, OrientedPoints &points, Report &report)
 {
   const bool is_missing = report.points.without_normal > 0;
   const bool has_edges =
       options.sharp.automatic || !options.sharp.faces.empty () || !options.field.sharp_surfaces.empty ();
   if (!is_missing && !has_edges)
     return {};
-  // Every point asks for its neighbours many times: a grid is quicker there than a tree.
-  const NeighborSearch::ConstPtr search = makeGridSearch (points.positions, options.polygonizer.threads);
   Outcome outcome;
   if (is_missing)
   {
     const StageClock clock (report.seconds_normals);
-    outcome = estimateNormals (points, *search, options.normals, report.orientation);
+    outcome = estimateNormals (points, layout, options.normals, report.orientation);
   }
-  return outcome.ok () && has_edges ? respectSharpEdges (*search, options, points, report) : outcome;
+  return outcome.ok () && has_edges ? respectSharpEdges (layout, options, points, report) : outcome;
 }
 
 } // namespace
@@ -177,12 +176,13 @@ buildField (const PointView &view, const Options &options, const SearchFactory &
     return outcome;
   const auto points = std::make_shared<OrientedPoints> ();
   NeighborSearch::ConstPtr search;
-  outcome = collect (view, make_search, options.polygonizer.threads, *points, search, report);
+  PointLayout::ConstPtr layout;
+  outcome = collect (view, make_search, options.polygonizer.threads, *points, search, layout, report);
   if (!outcome.ok ())
     return outcome;
   Options complete = options;
-  outcome = prepareNormals (complete, *points, report);
-  return outcome.ok () ? makeField (points, search, complete, field, report, progress) : outcome;
+  outcome = prepareNormals (*layout, complete, *points, report);
+  return outcome.ok () ? makeField (points, search, layout, complete, field, report, progress) : outcome;
 }
 
 Outcome

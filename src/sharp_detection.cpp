@@ -74,16 +74,17 @@ lengthsOf (const std::vector<Separation> &separations, DisjointSets &chains)
 
 /** \brief What noise asks for: the larger it is, the more nodes it takes to tell faces apart. */
 SegmentationOptions
-optionsFor (const OrientedPoints &points, const NeighborSearch &search, double angle, int k, int threads)
+optionsFor (const OrientedPoints &points, const PointLayout &layout, double angle, int threads)
 {
   SegmentationOptions options;
-  options.spacing = measureSpacing (points.positions, search, threads);
+  const int k = layout.k;
+  options.spacing = layout.spacing;
   options.angle = angle * DEGREES;
   options.separation_reach = options.spacing * std::sqrt (k / M_PI);
   if (k <= CLEAN_SUPPORT)
     return options;
   constexpr double SIGMAS = 3.0, NODES_PER_SUPPORT = 2.7;
-  options.chord = std::min (SIGMAS * positionNoise (search, options.spacing, threads, points), 1.2 * options.spacing);
+  options.chord = std::min (SIGMAS * positionNoise (*layout.search, options.spacing, threads, points), 1.2 * options.spacing);
   options.ball = static_cast<int> (NODES_PER_SUPPORT * k);
   options.smallest = 8;
   return options;
@@ -276,15 +277,16 @@ markNear (const OrientedPoints &points, const std::vector<Stretch> &stretches, i
 } // namespace
 
 Outcome
-findSharpSurfaces (const OrientedPoints &points, const NeighborSearch &search, const SharpOptions &options, int threads,
+findSharpSurfaces (const OrientedPoints &points, const PointLayout &layout, const SharpOptions &options, int threads,
                    std::vector<SharpSurface::ConstPtr> &surfaces)
 {
   surfaces.clear ();
   if (!(options.angle >= 5.0 && options.angle <= 90.0))
     return {Status::INVALID_SETTING,
             "the angle of sharp edges is " + toText (options.angle) + " degrees: use one of 5 to 90"};
-  const int k = chooseSupportSize (points, search, threads);
-  const SegmentationOptions segmentation = optionsFor (points, search, options.angle, k, threads);
+  const NeighborSearch &search = *layout.search;
+  const int k = layout.k;
+  const SegmentationOptions segmentation = optionsFor (points, layout, options.angle, threads);
   const FaceSegmentation found = segmentFaces (points, search, segmentation, threads);
   const std::vector<Stretch> stretches = gatherStretches (points, search, found, segmentation, k, threads);
   const std::vector<SharpSurface::ConstPtr> faces = makeFaces (points, found, markNear (points, stretches, threads), k);

@@ -32,7 +32,7 @@ struct Estimated
     erkpa::NormalOptions options;
     options.k = K;
     erkpa::Orientation orientation = erkpa::Orientation::NONE;
-    EXPECT_TRUE (erkpa::estimateNormals (points, *search, options, orientation).ok ());
+    EXPECT_TRUE (erkpa::estimateNormals (points, erkpa::PointLayout (points, 0), options, orientation).ok ());
     for (std::size_t i = 0; i < points.size (); ++i)
       if (points.normals[i].cast<double> ().dot (truth[i]) < 0.0)
         points.normals[i] *= -1.0f;

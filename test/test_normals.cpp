@@ -26,8 +26,7 @@ estimate (const shapes::Samples &samples, const NormalOptions &options, Orientat
     points.positions.emplace_back (p.cast<float> ());
     points.normals.emplace_back (Eigen::Vector3f::Zero ());
   }
-  const auto search = erkpa::makeKdTreeSearch (points.positions);
-  const erkpa::Outcome outcome = erkpa::estimateNormals (points, *search, options, orientation);
+  const erkpa::Outcome outcome = erkpa::estimateNormals (points, erkpa::PointLayout (points, 0), options, orientation);
   EXPECT_TRUE (outcome.ok ()) << outcome.message;
   return points;
 }
@@ -218,7 +217,7 @@ TEST (Normals, ThatWereGivenStayAndGiveTheOthersTheirSign)
   }
   const std::vector<Eigen::Vector3f> before = points.normals;
   Orientation orientation = Orientation::NONE;
-  ASSERT_TRUE (erkpa::estimateNormals (points, *erkpa::makeKdTreeSearch (points.positions), {}, orientation).ok ());
+  ASSERT_TRUE (erkpa::estimateNormals (points, erkpa::PointLayout (points, 0), {}, orientation).ok ());
   for (std::size_t i = 0; i < points.size (); i += 10)
     EXPECT_EQ (points.normals[i], before[i]);
   EXPECT_EQ (shareThatAgrees (points, sphere.normals), 0.0); // all inwards, as those that were given

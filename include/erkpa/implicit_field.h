@@ -5,6 +5,7 @@
 #include <erkpa/kernel.h>
 #include <erkpa/neighbor_search.h>
 #include <erkpa/oriented_points.h>
+#include <erkpa/point_layout.h>
 #include <erkpa/sharp_surface.h>
 #include <erkpa/space_warp.h>
 
@@ -118,9 +119,10 @@ public:
    * \param[in] options settings that checkOptions accepts; k = 0 is settled here. Collocation is not done here but by
    * interpolateNodes (), see collocation.h
    * \param[in] threads for what is prepared here; 0 = all processors
+   * \param[in] layout of the nodes, where it is known
    */
   ImplicitField (std::shared_ptr<const OrientedPoints> points, NeighborSearch::ConstPtr search,
-                 const FieldOptions &options, int threads = 0);
+                 const FieldOptions &options, int threads = 0, PointLayout::ConstPtr layout = nullptr);
   ~ImplicitField ();
 
   /** \brief Tells whether the settings make sense, and which does not. */

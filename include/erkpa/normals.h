@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <erkpa/neighbor_search.h>
 #include <erkpa/oriented_points.h>
+#include <erkpa/point_layout.h>
 
 namespace erkpa
 {
@@ -26,9 +26,11 @@ enum class Orientation
               ///< have seen the surface
 };
 
-/** \brief Estimate (pcl::NormalEstimationOMP) and orient the normals that are zero; the others stay. */
+/** \brief Estimate (pcl::NormalEstimationOMP) and orient the normals that are zero; the others stay.
+ * \param[in] layout of the positions
+ */
 Outcome
-estimateNormals (OrientedPoints &points, const NeighborSearch &search, const NormalOptions &options,
+estimateNormals (OrientedPoints &points, const PointLayout &layout, const NormalOptions &options,
                  Orientation &orientation);
 
 /** \brief What refineNormals () did. */
@@ -43,10 +45,11 @@ struct RefinedNormals
  *
  * Estimated normals, and given ones that look estimated, are smeared across edges: they are fitted anew from points on
  * their own side only. Noisy ones are smoothed, over neighbours that look their way. Others stay as they are.
+ * \param[in] layout of the positions
  * \param[in] estimated whether the normals come from estimateNormals ()
  * \param[in] threads 0 = all processors
  */
 RefinedNormals
-refineNormals (const NeighborSearch &search, bool estimated, int threads, OrientedPoints &points);
+refineNormals (const PointLayout &layout, bool estimated, int threads, OrientedPoints &points);
 
 } // namespace erkpa

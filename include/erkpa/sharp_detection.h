@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <erkpa/neighbor_search.h>
 #include <erkpa/oriented_points.h>
+#include <erkpa/point_layout.h>
 #include <erkpa/sharp_edges_from_faces.h>
 #include <erkpa/sharp_surface.h>
 #include <erkpa/status.h>
@@ -28,14 +28,14 @@ struct SharpOptions
  * limited to the places where they meet. They can be listed, left out, saved (sharp_surface_io.h) and given to a field
  * like any others.
  * \param[in] points the nodes, with normals that are not smeared over edges
- * \param[in] search finds them
+ * \param[in] layout of their positions
  * \param[in] options its angle counts
  * \param[in] threads 0 = all processors
  * \param[out] surfaces one for each stretch along which two faces meet
  * \return Status::INVALID_SETTING for an angle that makes no sense
  */
 Outcome
-findSharpSurfaces (const OrientedPoints &points, const NeighborSearch &search, const SharpOptions &options, int threads,
+findSharpSurfaces (const OrientedPoints &points, const PointLayout &layout, const SharpOptions &options, int threads,
                    std::vector<SharpSurface::ConstPtr> &surfaces);
 
 } // namespace erkpa

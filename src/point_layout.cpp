@@ -1,0 +1,16 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <erkpa/point_layout.h>
+
+#include "node_table.h"
+#include "noise.h"
+
+namespace erkpa
+{
+
+PointLayout::PointLayout (const OrientedPoints &points, int threads)
+    : grid (makePointGrid (points.positions, threads, spacing)), search (makeGridSearch (grid)),
+      k (chooseSupportSize (points, *search, threads))
+{
+}
+
+} // namespace erkpa
