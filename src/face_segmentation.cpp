@@ -22,12 +22,6 @@ namespace erkpa
 namespace
 {
 
-double
-angleBetween (const Eigen::Vector3d &a, const Eigen::Vector3d &b)
-{
-  return std::atan2 (a.cross (b).norm (), a.dot (b));
-}
-
 /** \brief A link and what it costs to grow a face along it. */
 struct Growth
 {
@@ -41,21 +35,25 @@ struct Growth
   }
 };
 
-/** \brief All links once: the turn between the normals, and a little for the way. */
+/** \brief All links once: the turn between the normals, by its chord, and a little for the way. */
 std::vector<Growth>
-listGrowths (const OrientedPoints &points, const SegmentationOptions &options, const NodeLists &links, int threads)
+listGrowths (const OrientedPoints &points, const SegmentationOptions &options, const NodeLinks &links, int threads)
 {
   constexpr double PER_SPACING = 0.05; // radians that weigh as much as a spacing
   constexpr std::size_t STRETCH = 512;
   const auto list = [&] (std::size_t first, std::size_t last, std::vector<Growth> &growths)
   {
+    std::size_t count = 0;
+    for (std::size_t i = first; i < last; ++i)
+      count += links[i].size ();
+    growths.reserve (count);
     for (std::size_t i = first; i < last; ++i)
       for (const int j : links[i])
       {
         const int node = static_cast<int> (i);
         if (j < node)
           continue;
-        const double turn = angleBetween (normalOf (points, node), normalOf (points, j));
+        const double turn = (normalOf (points, node) - normalOf (points, j)).norm ();
         const double way = (positionOf (points, j) - positionOf (points, node)).norm () / options.spacing;
         growths.push_back ({static_cast<float> (turn + PER_SPACING * way), node, j});
       }
@@ -175,7 +173,7 @@ segmentFaces (const OrientedPoints &points, const NeighborSearch &search, const 
               int threads)
 {
   std::vector<char> is_suspect;
-  const NodeLists links = linkNeighbors (points, search, options, threads, is_suspect);
+  const NodeLinks links = linkNeighbors (points, search, options, threads, is_suspect);
   const NodeLists apart = findNodesApart (points, search, options, links, is_suspect, threads);
   FaceGrower grower (points.size (), apart);
   DisjointSets &sets = grower.grow (listGrowths (points, options, links, threads));

@@ -17,9 +17,9 @@ class LocalGroups
 {
 public:
   LocalGroups (const OrientedPoints &points, const NeighborSearch &search, const SegmentationOptions &options,
-               const NodeLists &links)
+               const NodeLinks &links)
       : points_ (points), search_ (search), options_ (options), test_ (points, options), links_ (links),
-        slots_ (points.size (), options.ball)
+        groups_ (points.size (), OUTSIDE)
   {
   }
 
@@ -27,35 +27,39 @@ public:
   std::vector<int>
   nodesApartFrom (int node)
   {
-    const auto i = static_cast<std::size_t> (node);
-    search_.nearestK (points_.positions[i], options_.ball, ball_, squared_);
-    for (std::size_t slot = 0; slot < ball_.size (); ++slot)
-      slots_[static_cast<std::size_t> (ball_[slot])] = static_cast<int> (slot);
+    search_.nearestK (points_.positions[static_cast<std::size_t> (node)], options_.ball, ball_, squared_);
+    for (const int j : ball_)
+      group (j) = UNKNOWN;
     std::vector<int> apart;
-    if (slots_[i] < options_.ball)
+    if (group (node) == UNKNOWN)
     {
       listStrangers (node);
-      for (const int slot : groupsOfStrangers (slots_[i]))
-        apart.push_back (ball_[static_cast<std::size_t> (slot)]);
+      apart = strangersApartFrom (node);
     }
     for (const int j : ball_)
-      slots_[static_cast<std::size_t> (j)] = options_.ball;
+      group (j) = OUTSIDE;
     std::sort (apart.begin (), apart.end ());
     return apart;
   }
 
 private:
-  static constexpr int UNKNOWN = -1, STRANGER = -2; // groups
+  static constexpr int UNKNOWN = -1, STRANGER = -2, OUTSIDE = 0; // groups; others count from 1, the node's own
 
-  /** \brief The slots of those close to a node that do not fit to it. */
+  int &
+  group (int node)
+  {
+    return groups_[static_cast<std::size_t> (node)];
+  }
+
+  /** \brief Those close to a node that do not fit to it. */
   void
   listStrangers (int node)
   {
     const double reach = options_.separation_reach * options_.separation_reach;
     strangers_.clear ();
-    for (std::size_t slot = 0; slot < ball_.size (); ++slot)
-      if (static_cast<double> (squared_[slot]) <= reach && !test_.areSmooth (node, ball_[slot]))
-        strangers_.push_back (static_cast<int> (slot));
+    for (std::size_t i = 0; i < ball_.size (); ++i)
+      if (static_cast<double> (squared_[i]) <= reach && !test_.areSmooth (node, ball_[i]))
+        strangers_.push_back (ball_[i]);
   }
 
   /** \brief Of the strangers those that are of other groups than \a own; all groups must be large enough.
@@ -63,78 +67,74 @@ private:
    * Groups are followed from their ends only as far as it takes.
    */
   std::vector<int>
-  groupsOfStrangers (int own)
+  strangersApartFrom (int own)
   {
     std::vector<int> others;
-    groups_.assign (static_cast<std::size_t> (options_.ball) + 1, UNKNOWN);
-    groups_.back () = 0; // nothing outside is ever taken up
     auto unknown = strangers_.size ();
     for (const int stranger : strangers_)
-      groups_[static_cast<std::size_t> (stranger)] = STRANGER;
+      group (stranger) = STRANGER;
     const auto has_found_all = [&] (int, bool is_stranger) { return (unknown -= is_stranger ? 1 : 0) == 0; };
-    const int size = follow (own, 0, has_found_all);
+    const int size = follow (own, 1, has_found_all);
     if (unknown == 0 || size < options_.smallest)
       return others;
     const auto is_large = [&] (int count, bool) { return count >= options_.smallest; };
-    std::vector<char> counts{1}; // per group whether it is large enough
+    std::vector<char> counts{0, 1}; // per group whether it is large enough
     for (const int stranger : strangers_)
     {
-      int group = groups_[static_cast<std::size_t> (stranger)];
-      if (group < 0)
+      if (group (stranger) < 0)
       {
-        group = static_cast<int> (counts.size ());
-        const int members = follow (stranger, group, is_large);
+        const int members = follow (stranger, static_cast<int> (counts.size ()), is_large);
         // A group that was left as large enough may be met again from another end.
         counts.push_back (members >= options_.smallest || meets_other_ ? 1 : 0);
       }
-      if (group > 0 && counts[static_cast<std::size_t> (group)])
+      if (group (stranger) > 1 && counts[static_cast<std::size_t> (group (stranger))])
         others.push_back (stranger);
     }
     return others;
   }
 
-  /** \brief Follow the links from a slot, and give all that are reached to a group.
-   * \param[in] is_enough told the number of slots reached and whether the last one was a stranger; true: stop
-   * \return number of slots reached
+  /** \brief Follow the links from a node, and give all of the ball that are reached to a group.
+   * \param[in] is_enough told the number of nodes reached and whether the last one was a stranger; true: stop
+   * \return number of nodes reached
    */
   template <typename IsEnoughT>
   int
-  follow (int start, int group, IsEnoughT is_enough)
+  follow (int start, int to, IsEnoughT is_enough)
   {
     int count = 0;
     meets_other_ = false;
     front_.clear ();
-    const auto take = [&] (int slot)
+    const auto take = [&] (int node)
     {
-      const bool is_stranger = std::exchange (groups_[static_cast<std::size_t> (slot)], group) == STRANGER;
-      front_.push_back (slot);
+      const bool is_stranger = std::exchange (group (node), to) == STRANGER;
+      front_.push_back (node);
       return is_enough (++count, is_stranger);
     };
     if (take (start))
       return count;
     for (std::size_t next = 0; next < front_.size (); ++next) // NOLINT(modernize-loop-convert): it grows meanwhile
     {
-      listUnknown (links_[static_cast<std::size_t> (ball_[static_cast<std::size_t> (front_[next])])], group);
-      for (const int slot : linked_)
-        if (take (slot))
+      listUnknown (links_[static_cast<std::size_t> (front_[next])], to);
+      for (const int node : linked_)
+        if (take (node))
           return count;
     }
     return count;
   }
 
-  /** \brief Those of the links that lead to slots of no group yet; without branches, which none could foretell. */
+  /** \brief Those of the links that lead to nodes of no group yet; without branches, which none could foretell. */
   void
-  listUnknown (const std::vector<int> &links, int group)
+  listUnknown (const NodeLinks::List &links, int own)
   {
     linked_.resize (links.size ());
     std::size_t kept = 0;
     int others = 0;
     for (const int j : links)
     {
-      const int slot = slots_[static_cast<std::size_t> (j)], known = groups_[static_cast<std::size_t> (slot)];
-      linked_[kept] = slot;
+      const int known = groups_[static_cast<std::size_t> (j)];
+      linked_[kept] = j;
       kept += known < 0 ? 1 : 0;
-      others |= static_cast<int> (known > 0) & static_cast<int> (known != group);
+      others |= static_cast<int> (known > 1) & static_cast<int> (known != own);
     }
     linked_.resize (kept);
     meets_other_ = meets_other_ || others != 0;
@@ -144,12 +144,11 @@ private:
   const NeighborSearch &search_;
   const SegmentationOptions &options_;
   const SmoothnessTest test_;
-  const NodeLists &links_;
-  std::vector<int> slots_; // place in the ball; that after the last outside
+  const NodeLinks &links_;
+  std::vector<int> groups_; // of all nodes
   std::vector<int> ball_;
   std::vector<float> squared_;
-  std::vector<int> strangers_, front_, linked_; // slots
-  std::vector<int> groups_;                     // of the slots, and of what is outside; 0 is the node's own
+  std::vector<int> strangers_, front_, linked_;
   bool meets_other_ = false;                    // whether the group last followed is part of one that was left before
 };
 
@@ -157,7 +156,7 @@ private:
 
 NodeLists
 findNodesApart (const OrientedPoints &points, const NeighborSearch &search, const SegmentationOptions &options,
-                const NodeLists &links, const std::vector<char> &is_suspect, int threads)
+                const NodeLinks &links, const std::vector<char> &is_suspect, int threads)
 {
   NodeLists seen (points.size ()), apart (points.size ());
   parallelFor (

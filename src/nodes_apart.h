@@ -8,9 +8,11 @@
 namespace erkpa
 {
 
+using NodeLists = std::vector<std::vector<int>>; ///< per node
+
 /** \brief For every node the nodes that must not be on its face; both see it so. */
 NodeLists
 findNodesApart (const OrientedPoints &points, const NeighborSearch &search, const SegmentationOptions &options,
-                const NodeLists &links, const std::vector<char> &is_suspect, int threads);
+                const NodeLinks &links, const std::vector<char> &is_suspect, int threads);
 
 } // namespace erkpa

@@ -31,14 +31,7 @@ public:
   withinRadius (const Eigen::Vector3f &x, double radius, std::vector<int> &indices,
                 std::vector<float> &squared_distances) const override
   {
-    indices.clear ();
-    squared_distances.clear ();
-    grid_->visitWithin (x.cast<double> (), radius,
-                        [&] (float squared, int index)
-                        {
-                          indices.push_back (index);
-                          squared_distances.push_back (squared);
-                        });
+    grid_->withinRadius (x.cast<double> (), radius, indices, squared_distances);
   }
 
   bool
@@ -171,10 +164,34 @@ PointGrid::hasWithin (const Eigen::Vector3d &x, double radius) const
 }
 
 void
-PointGrid::withinRadius (const Eigen::Vector3d &x, double radius, std::vector<std::pair<float, int>> &found) const
+PointGrid::withinRadius (const Eigen::Vector3d &x, double radius, std::vector<int> &indices,
+                         std::vector<float> &squared_distances) const
 {
-  found.clear ();
-  visitWithin (x, radius, [&] (float squared, int index) { found.emplace_back (squared, index); });
+  const Eigen::Vector3f center = x.cast<float> ();
+  const auto limit = static_cast<float> (radius * radius);
+  const float *px = coordinates_[0].data (), *py = coordinates_[1].data (), *pz = coordinates_[2].data ();
+  const float cx = center[0], cy = center[1], cz = center[2];
+  std::size_t kept = 0;
+  visitNear (x, radius,
+             [&] (std::size_t first, std::size_t last)
+             {
+               const std::size_t most = kept + (last - first);
+               if (indices.size () < most || squared_distances.size () < most)
+               {
+                 indices.resize (2 * most);
+                 squared_distances.resize (2 * most);
+               }
+               for (std::size_t place = first; place < last; ++place)
+               {
+                 const float dx = px[place] - cx, dy = py[place] - cy, dz = pz[place] - cz;
+                 const float squared = dx * dx + dy * dy + dz * dz;
+                 indices[kept] = static_cast<int> (index_[place]);
+                 squared_distances[kept] = squared;
+                 kept += squared <= limit ? 1 : 0; // no branch, which none could foretell
+               }
+             });
+  indices.resize (kept);
+  squared_distances.resize (kept);
 }
 
 void
@@ -185,11 +202,17 @@ PointGrid::nearestK (const Eigen::Vector3d &x, int k, std::vector<std::pair<floa
   constexpr double MARGIN = 1.15;
   const auto wanted = std::min (static_cast<std::size_t> (k), size ());
   double reach = cell_ * std::max (0.5, std::sqrt (static_cast<double> (k) / PER_CELL));
-  for (withinRadius (x, reach, found); found.size () < wanted && reach < EVERYWHERE; withinRadius (x, reach, found))
+  std::vector<int> indices;
+  std::vector<float> squared;
+  for (withinRadius (x, reach, indices, squared); indices.size () < wanted && reach < EVERYWHERE;
+       withinRadius (x, reach, indices, squared))
   {
-    const double share = static_cast<double> (wanted) / std::max (1.0, static_cast<double> (found.size ()));
+    const double share = static_cast<double> (wanted) / std::max (1.0, static_cast<double> (indices.size ()));
     reach *= std::clamp (MARGIN * std::sqrt (share), 1.3, 4.0);
   }
+  found.resize (indices.size ());
+  for (std::size_t i = 0; i < found.size (); ++i)
+    found[i] = {squared[i], indices[i]};
   if (found.size () <= wanted)
     return;
   std::nth_element (found.begin (), found.begin () + static_cast<std::ptrdiff_t> (wanted), found.end ());

@@ -75,26 +75,6 @@ public:
         }
   }
 
-  /** \brief Calls visit (squared distance, index) for all points within \a radius of \a x. */
-  template <typename VisitT>
-  void
-  visitWithin (const Eigen::Vector3d &x, double radius, VisitT visit) const
-  {
-    const Eigen::Vector3f center = x.cast<float> ();
-    const auto limit = static_cast<float> (radius * radius);
-    visitNear (x, radius,
-               [&] (std::size_t first, std::size_t last)
-               {
-                 for (std::size_t place = first; place < last; ++place)
-                 {
-                   const Eigen::Vector3f p (coordinates_[0][place], coordinates_[1][place], coordinates_[2][place]);
-                   const float squared = (p - center).squaredNorm ();
-                   if (squared <= limit)
-                     visit (squared, static_cast<int> (index_[place]));
-                 }
-               });
-  }
-
   /** \brief Whether there is a point within \a radius of \a x. */
   bool
   hasWithin (const Eigen::Vector3d &x, double radius) const;
@@ -103,9 +83,10 @@ public:
   void
   nearestK (const Eigen::Vector3d &x, int k, std::vector<std::pair<float, int>> &found) const;
 
-  /** \brief All points within \a radius of \a x, likewise. */
+  /** \brief All points within \a radius of \a x, in the order of the grid. */
   void
-  withinRadius (const Eigen::Vector3d &x, double radius, std::vector<std::pair<float, int>> &found) const;
+  withinRadius (const Eigen::Vector3d &x, double radius, std::vector<int> &indices,
+                std::vector<float> &squared_distances) const;
 
 private:
   using Cell = std::array<int, 3>;

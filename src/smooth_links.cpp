@@ -23,22 +23,26 @@ public:
   {
   }
 
-  NodeLists
+  NodeLinks
   link (std::vector<char> &is_suspect) const
   {
-    NodeLists links (points_.size ());
     is_suspect.assign (points_.size (), 0);
-    forEachNode ([&] (Found &found, std::size_t i) { is_suspect[i] = linkWithin (near_, i, found, links[i]) ? 1 : 0; });
+    NodeLinks near;
+    near.fill (points_.size (), threads_, [] { return Found (); },
+               [&] (Found &found, std::size_t i, std::vector<int> &links)
+               { is_suspect[i] = linkWithin (near_, i, found, links) ? 1 : 0; });
     if (!(far_ > near_))
-      return links;
-    const std::vector<char> is_wanted = markFar (is_suspect, links);
-    forEachNode (
-        [&] (Found &found, std::size_t i)
-        {
-          links[i].shrink_to_fit ();
-          if (is_wanted[i])
-            linkWithin (far_, i, found, links[i]);
-        });
+      return near;
+    const std::vector<char> is_wanted = markFar (is_suspect, near);
+    NodeLinks links;
+    links.fill (points_.size (), threads_, [] { return Found (); },
+                [&] (Found &found, std::size_t i, std::vector<int> &of_node)
+                {
+                  if (is_wanted[i])
+                    linkWithin (far_, i, found, of_node);
+                  else
+                    of_node.insert (of_node.end (), near[i].begin (), near[i].end ());
+                });
     return links;
   }
 
@@ -49,20 +53,11 @@ private:
     std::vector<float> squared;
   };
 
-  template <typename WorkT>
-  void
-  forEachNode (WorkT work) const
-  {
-    parallelFor (
-        points_.size (), threads_, [] { return Found (); }, work);
-  }
-
-  /** \brief Link a node with those within a reach; true where there are others close by. */
+  /** \brief Append the links of a node with those within a reach; true where there are others close by. */
   bool
   linkWithin (double reach, std::size_t i, Found &found, std::vector<int> &links) const
   {
     search_.withinRadius (points_.positions[i], reach, found.nodes, found.squared);
-    links.clear ();
     bool has_others = false;
     for (const int j : found.nodes)
     {
@@ -80,12 +75,13 @@ private:
 
   /** \brief The nodes in the balls of suspects, and those with few neighbours. */
   std::vector<char>
-  markFar (const std::vector<char> &is_suspect, const NodeLists &links) const
+  markFar (const std::vector<char> &is_suspect, const NodeLinks &links) const
   {
     constexpr std::size_t FEW = 6;
     const double ball = 1.3 * options_.spacing * std::sqrt (options_.ball / M_PI);
     std::vector<std::atomic<char>> marks (points_.size ());
-    forEachNode (
+    parallelFor (
+        points_.size (), threads_, [] { return Found (); },
         [&] (Found &found, std::size_t i)
         {
           if (links[i].size () < FEW)
@@ -109,7 +105,7 @@ private:
 
 } // namespace
 
-NodeLists
+NodeLinks
 linkNeighbors (const OrientedPoints &points, const NeighborSearch &search, const SegmentationOptions &options,
                int threads, std::vector<char> &is_suspect)
 {

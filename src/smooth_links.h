@@ -2,6 +2,7 @@
 #pragma once
 
 #include "face_segmentation.h"
+#include "node_links.h"
 
 #include <algorithm>
 #include <cmath>
@@ -10,8 +11,6 @@
 
 namespace erkpa
 {
-
-using NodeLists = std::vector<std::vector<int>>; ///< per node
 
 inline Eigen::Vector3d
 positionOf (const OrientedPoints &points, int node)
@@ -76,7 +75,7 @@ private:
  * faces apart in the balls of suspects: elsewhere near ones do. \param[out] is_suspect of each node, whether others are
  * close to it, too
  */
-NodeLists
+NodeLinks
 linkNeighbors (const OrientedPoints &points, const NeighborSearch &search, const SegmentationOptions &options,
                int threads, std::vector<char> &is_suspect);
 
