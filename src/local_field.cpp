@@ -284,9 +284,11 @@ LocalField::sharpSurfaceAt (const Eigen::Vector3d &x)
   best = best < 0 ? -1 : field_.placeOfEnriching (best);
   if (!has_faces)
     return best;
+  std::vector<LocalSample> samples;
   for (const Meeting *meeting : groups_.separationsAt (unwarped))
   {
-    const LocalSample one = sampleOnSide (x, {meeting->face, x}), other = sampleOnSide (x, {meeting->other, x});
+    sampleOnSides (x, {{meeting->face, x}, {meeting->other, x}}, samples, Slope::OF_THE_FIT);
+    const LocalSample &one = samples.front (), &other = samples.back ();
     const double miss = std::max (std::abs (one.value), std::abs (other.value));
     if (one.isDefined () && other.isDefined () && (best < 0 || miss < least))
     {
