@@ -17,6 +17,14 @@ namespace
 
 constexpr double ROUNDING = 1e-5; // of a length, in float
 
+/** \brief What ε nowhere exceeds within \a extent of a place where it is \a radius, or next to nowhere. */
+double
+trustedRadius (double radius, double extent)
+{
+  constexpr double UNEVEN = 1.25, ASIDE = 0.6; // nodes are closer together in the middle; points are off the surface
+  return std::min (radius + extent, std::hypot (UNEVEN * radius, ASIDE * extent));
+}
+
 std::optional<lanes::Kernel>
 laneKernelOf (const FieldOptions &options)
 {
@@ -122,7 +130,7 @@ BlockField::gather (const Eigen::Vector3d &center, double extent)
     return false;
   // A middle that floats can say: then differences from it are exact.
   center_ = center.cast<float> ().cast<double> ();
-  const double all = extent + (center - center_).norm ();
+  const double all = extent_ = extent + (center - center_).norm ();
   if (!findReach (center_, all))
     return false;
   has_separations_ = faces_.gather (center_, all);
@@ -149,12 +157,16 @@ BlockField::findReach (const Eigen::Vector3d &center, double extent)
   double guess = 1.15 * (center_radius_ > 0.0 ? std::min (center_radius_, 2.0 * unit_) : unit_);
   for (; center.norm () < FARTHEST && guess < FARTHEST; guess *= 2.0)
   {
-    findNodes (center, guess + 2.0 * extent);
+    findNodes (center, trustedRadius (guess, extent) + extent);
     if (nodes_.count () < k)
       continue;
     center_radius_ = nodes_.boundOfKth (k, guess);
-    if (center_radius_ <= guess)
-      return true;
+    if (!(center_radius_ <= guess))
+      continue;
+    trusted_ = trustedRadius (center_radius_, extent);
+    reach_ = trusted_ + extent;
+    nodes_.keepWithin (reach_);
+    return true;
   }
   center_radius_ = 0.0;
   return false;
@@ -165,6 +177,14 @@ BlockField::findNodes (const Eigen::Vector3d &center, double reach)
 {
   reach_ = reach;
   nodes_.find (center, reach);
+}
+
+void
+BlockField::widen ()
+{
+  trusted_ = center_radius_ + extent_;
+  findNodes (center_, trusted_ + extent_);
+  nodes_.copy ();
 }
 
 double
@@ -221,12 +241,13 @@ BlockField::setRadii (BlockPoints &points) const
 {
   const SupportSize &size = field_.supportSize ();
   const auto radius = static_cast<float> (center_radius_ * inverse_unit_);
+  const auto trusted = static_cast<float> (trusted_ * inverse_unit_);
   for (std::size_t i = 0; i < points.size (); ++i)
   {
     const Eigen::Vector3f x = points.position (i);
     float bound = radius;
     if (size.kind () == SupportSize::Kind::NEAREST)
-      bound = (radius + x.norm ()) * static_cast<float> (1.0 + ROUNDING); // ε is 1-Lipschitz
+      bound = std::min (radius + x.norm (), trusted) * static_cast<float> (1.0 + ROUNDING); // ε is 1-Lipschitz
     else if (size.kind () == SupportSize::Kind::FUNCTION)
     {
       const Eigen::Vector3d position = center_ + unit_ * x.cast<double> ();
@@ -241,37 +262,52 @@ void
 BlockField::evaluate (bool gradients)
 {
   settings_.gradients = gradients;
-  if (gradients && size () > 0)
-    nodes_.copyAttributes ();
-  if (plain_.size () > 0)
-    evaluatePlain ();
-  if (enriched_.size () > 0)
-    evaluateEnriched ();
   evaluations_ += size ();
+  run ();
+  if (plain_.hasShort () || enriched_.hasShort ())
+  {
+    widen ();
+    run ();
+  }
+  finishPlain ();
+  finishEnriched ();
 }
 
 void
-BlockField::evaluatePlain ()
+BlockField::run ()
 {
-  setRadii (plain_);
-  const bool is_function = field_.supportSize ().kind () == SupportSize::Kind::FUNCTION;
-  plain_.run (engine_, settings_, nodes_.view (settings_.gradients), is_function);
+  if (settings_.gradients && size () > 0)
+    nodes_.copyAttributes ();
+  if (plain_.size () > 0)
+  {
+    setRadii (plain_);
+    const bool is_function = field_.supportSize ().kind () == SupportSize::Kind::FUNCTION;
+    plain_.run (engine_, settings_, nodes_.view (settings_.gradients), is_function);
+  }
+  if (enriched_.size () > 0)
+  {
+    setRadii (enriched_);
+    double reach = 0.0;
+    for (const Eigen::Vector3d &x : enriched_at_)
+      reach = std::max (reach, reachAt (x));
+    enrichment_.run (engine_, settings_, nodes_, enriched_at_, reach, enriched_);
+  }
+}
+
+void
+BlockField::finishPlain ()
+{
   for (std::size_t i = 0; i < plain_.size (); ++i)
     support_nodes_ += plain_.supports[i];
-  if (is_function)
+  if (field_.supportSize ().kind () == SupportSize::Kind::FUNCTION)
     refuseUncovered ();
   if (!at_faces_.empty ())
     faces_.combine (settings_, center_radius_, at_faces_, plain_);
 }
 
 void
-BlockField::evaluateEnriched ()
+BlockField::finishEnriched ()
 {
-  setRadii (enriched_);
-  double reach = 0.0;
-  for (const Eigen::Vector3d &x : enriched_at_)
-    reach = std::max (reach, reachAt (x));
-  enrichment_.run (engine_, settings_, nodes_, enriched_at_, reach, enriched_);
   for (std::size_t i = 0; i < enriched_.size (); ++i)
   {
     support_nodes_ += enriched_.supports[i];

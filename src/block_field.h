@@ -169,11 +169,18 @@ private:
   void
   setRadii (BlockPoints &points) const;
 
+  /** \brief Gather all nodes that any support of a point of the ball may hold. */
   void
-  evaluatePlain ();
+  widen ();
 
   void
-  evaluateEnriched ();
+  run ();
+
+  void
+  finishPlain ();
+
+  void
+  finishEnriched ();
 
   void
   refuseUncovered ();
@@ -204,7 +211,9 @@ private:
   std::vector<std::uint32_t> at_faces_;      // of plain_
   std::vector<Eigen::Vector3d> enriched_at_; // local frame
   Eigen::Vector3d center_ = Eigen::Vector3d::Zero ();
-  double center_radius_ = 0.0; // ε there, at most
+  double extent_ = 0.0;        // of the ball
+  double center_radius_ = 0.0; // ε in its middle, at most
+  double trusted_ = 0.0;       // ε at its points, at most; but for State::SHORT
   double reach_ = 0.0;         // how far around it the nodes are gathered
   std::size_t evaluations_ = 0, support_nodes_ = 0;
 };

@@ -15,16 +15,14 @@ BlockNodes::BlockNodes (const ImplicitField &field, double unit)
 void
 BlockNodes::find (const Eigen::Vector3d &center, double reach)
 {
-  constexpr double ROUNDING = 1e-5; // of a length, in float
   center_ = center;
-  const double all = (reach + field_.largestOffset ()) * (1.0 + ROUNDING);
-  const auto limit = static_cast<float> (all * all);
+  const float limit = limitOf (reach);
   const PointGrid &grid = *table_.grid;
   const float *x = grid.coordinates (0).data (), *y = grid.coordinates (1).data (), *z = grid.coordinates (2).data ();
   const auto cx = static_cast<float> (center[0]), cy = static_cast<float> (center[1]),
              cz = static_cast<float> (center[2]);
   std::size_t kept = 0;
-  grid.visitNear (center, all,
+  grid.visitNear (center, std::sqrt (static_cast<double> (limit)),
                   [&] (std::size_t first, std::size_t last)
                   {
                     if (places_.size () <= kept + (last - first))
@@ -40,6 +38,28 @@ BlockNodes::find (const Eigen::Vector3d &center, double reach)
                       kept += squared <= limit ? 1 : 0;
                     }
                   });
+  count_ = kept;
+}
+
+float
+BlockNodes::limitOf (double reach) const
+{
+  constexpr double ROUNDING = 1e-5; // of a length, in float
+  const double all = (reach + field_.largestOffset ()) * (1.0 + ROUNDING);
+  return static_cast<float> (all * all);
+}
+
+void
+BlockNodes::keepWithin (double reach)
+{
+  const float limit = limitOf (reach);
+  std::size_t kept = 0;
+  for (std::size_t i = 0; i < count_; ++i)
+  {
+    places_[kept] = places_[i];
+    squared_[kept] = squared_[i];
+    kept += squared_[i] <= limit ? 1 : 0;
+  }
   count_ = kept;
 }
 

@@ -31,6 +31,10 @@ public:
   void
   find (const Eigen::Vector3d &center, double reach);
 
+  /** \brief Keep those whose value points may lie within \a reach, which is less than they were found for. */
+  void
+  keepWithin (double reach);
+
   /** \brief Take those of other nodes that a predicate of their place among them chooses. */
   template <typename ChooseT>
   void
@@ -104,6 +108,10 @@ public:
   view (bool attributes) const;
 
 private:
+  /** \brief The square of the distance within which value points may lie within \a reach. */
+  float
+  limitOf (double reach) const;
+
   /** \brief 0 at a node, 1 and -1 at its off-surface points. */
   int
   sideOf (std::size_t value_point) const

@@ -5,6 +5,7 @@
 
 #include <Eigen/Core>
 
+#include <algorithm>
 #include <array>
 #include <cstddef>
 #include <cstdint>
@@ -78,6 +79,14 @@ public:
   std::vector<lanes::State> states;
   std::vector<std::uint32_t> nearest, supports, active;
   std::array<std::vector<float>, 3> gradients, radius_gradients;
+
+  /** \brief Whether a bound of ε was exceeded. */
+  bool
+  hasShort () const
+  {
+    return std::any_of (states.begin (), states.begin () + static_cast<std::ptrdiff_t> (count_),
+                        [] (lanes::State state) { return state == lanes::State::SHORT; });
+  }
 
   float
   attribute (std::size_t i, std::size_t channel) const

@@ -42,6 +42,7 @@ public:
     storeFit (fit, first);
     if (settings_.gradients)
       storeGradients (support, fit, first, state);
+    state = xsimd::select (support.isShort (), B (3.0f), state);
     storeBytes (near, state, fit, first);
   }
 

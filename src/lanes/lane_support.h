@@ -35,6 +35,13 @@ public:
     return radius_;
   }
 
+  /** \brief Where ε is beyond Points::radius. */
+  auto
+  isShort () const
+  {
+    return short_ > B (0.5f);
+  }
+
   /** \brief ε², as the distances of nodes are compared with. */
   B
   squaredRadius () const
@@ -195,7 +202,9 @@ private:
       middle = xsimd::select (in_high > k, middle, high);
     }
     kth_ = largestWithin (high);
-    if (is_limited_)
+    if (!is_limited_)
+      short_ = xsimd::select (in_high < k, B (1.0f), B (0.0f));
+    else
     {
       at_limit_ = xsimd::select (in_high < k, B (1.0f), B (0.0f));
       kth_ = xsimd::select (in_high < k, radius_ * radius_, kth_);
@@ -264,6 +273,7 @@ private:
   B x_[3];
   B radius_, inverse_, kth_;
   B at_limit_ = B (0.0f); // 1 where ε is Points::radius
+  B short_ = B (0.0f);    // 1 where it is beyond
 };
 
 } // namespace erkpa::lanes

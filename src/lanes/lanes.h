@@ -77,7 +77,7 @@ struct Points
 {
   std::size_t count;
   const float *x, *y, *z;
-  const float *radius;    ///< ε(x); with k > 0 a bound that it does not exceed
+  const float *radius;    ///< ε(x); with k > 0 a bound: where it is exceeded, State::SHORT
   const float *guess;     ///< with k > 0: about ε(x)
   const float *growth[3]; ///< ∇ε(x) where Points::radius is ε(x); null: zero
   std::size_t stride;     ///< from a point's attribute or coefficient to its next one
@@ -117,7 +117,8 @@ enum class State : std::uint8_t
 {
   DEFINED,
   UNDEFINED, ///< too few nodes: value and gradient are NaN
-  UNSETTLED  ///< it takes terms or digits that are not there: ask LocalField
+  UNSETTLED, ///< it takes terms or digits that are not there: ask LocalField
+  SHORT      ///< fewer than k nodes lie within Points::radius
 };
 
 /** \brief What is found, one per point. Gradients and what follows may be null where they are not asked for. */
