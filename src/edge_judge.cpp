@@ -105,17 +105,22 @@ EdgeJudge::entangles (int h) const
 {
   const int from = edges_.start (h), to = edges_.end (h);
   bool is_free = true; // from other parts of the surface, beyond a crease or a border
+  edges_.around (from,
+                 [&] (int side)
+                 {
+                   const int a = edges_.end (side);
+                   is_free = is_free && isPlain (a) && isInside (a);
+                 });
+  if (is_free)
+    return false;
   std::vector<Triangle> moved;
   edges_.around (from,
                  [&] (int side)
                  {
                    const int a = edges_.end (side), b = apex (side);
-                   is_free = is_free && isPlain (a) && isInside (a);
                    if (a != to && b != to)
                      moved.push_back ({to, a, b});
                  });
-  if (is_free)
-    return false;
   bool any = false;
   const auto test = [&] (const Triangle &other)
   {

@@ -29,6 +29,20 @@ public:
     blocks_[MIDDLE] = grid_.find (cell).block;
   }
 
+  /** \brief Look everything up anew: the grid has grown. */
+  void
+  forget ()
+  {
+    first_ = {1, 0, 0};
+  }
+
+  /** \brief Whether the block in the middle is one of the grid's. */
+  bool
+  exists () const
+  {
+    return blocks_[MIDDLE] >= 0;
+  }
+
   /** \brief The place of a node or cell in or next to the block in the middle; block < 0 where it does not exist. */
   GridPlace
   find (const GridPoint &point)

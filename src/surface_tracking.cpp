@@ -204,22 +204,38 @@ SurfaceTracker::seedFromNodes ()
   }
   // In the order of the grid neighbours follow each other, and so do their blocks in memory.
   const PointGrid &nodes = *field_.nodeTable ().grid;
+  GridWindow window (grid_);
   for (std::size_t i = 0; i < nodes.size (); ++i)
-    addToFront (grid_.cellOf ({nodes.coordinates (0)[i], nodes.coordinates (1)[i], nodes.coordinates (2)[i]}));
+  {
+    const GridPoint cell =
+        grid_.cellOf ({nodes.coordinates (0)[i], nodes.coordinates (1)[i], nodes.coordinates (2)[i]});
+    window.moveTo (cell);
+    const GridPlace place = window.find (cell);
+    if (place.block >= 0)
+      addToFront (place.block, place.bit ());
+    else
+    {
+      addToFront (cell);
+      window.forget ();
+    }
+  }
 }
 
 bool
-SurfaceTracker::findCellNear (const GridPoint &cell, GridPoint &found) const
+SurfaceTracker::findCellNear (GridWindow &window, const GridPoint &cell, GridPoint &found)
 {
   found = cell;
-  if (grid_.isActive (cell))
+  window.moveTo (cell);
+  if (!window.exists ())
+    return false;
+  if (window.isActive (cell))
     return true;
   for (const int dx : {0, -1, 1})
     for (const int dy : {0, -1, 1})
       for (const int dz : {0, -1, 1})
       {
         found = cell + GridPoint{dx, dy, dz};
-        if (grid_.isActive (found))
+        if (window.isActive (found))
           return true;
       }
   return false;
@@ -236,11 +252,12 @@ SurfaceTracker::seedFromProjections ()
   parallelRanges (order.size (), options_.threads,
                   [&] (std::size_t first, std::size_t last)
                   {
+                    GridWindow window (grid_);
                     for (std::size_t i = first; i < last; ++i)
                     {
                       const GridPoint cell = grid_.cellOf (positions[order[i]].cast<double> ());
                       GridPoint found{};
-                      if (findCellNear (cell, found))
+                      if (findCellNear (window, cell, found))
                         cells_of_nodes_[order[i]] = found;
                     }
                   });

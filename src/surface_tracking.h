@@ -2,6 +2,7 @@
 #pragma once
 
 #include "local_field.h"
+#include "grid_window.h"
 #include "sparse_grid.h"
 
 #include <erkpa/marching_cubes.h>
@@ -80,8 +81,8 @@ private:
   void
   seedFromProjections ();
 
-  bool
-  findCellNear (const GridPoint &cell, GridPoint &found) const;
+  static bool
+  findCellNear (GridWindow &window, const GridPoint &cell, GridPoint &found);
 
   bool
   project (LocalField &local, Eigen::Vector3d &position) const;
