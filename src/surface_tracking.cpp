@@ -3,6 +3,7 @@
 
 #include "block_evaluator.h"
 #include "grid_bits.h"
+#include "surface_feet.h"
 #include "threads.h"
 
 #include <algorithm>
@@ -262,46 +263,20 @@ SurfaceTracker::seedFromProjections ()
                     }
                   });
   std::vector<std::size_t> away;
-  for (std::size_t i = 0; i < positions.size (); ++i)
+  std::vector<Eigen::Vector3d> feet;
+  for (const std::uint32_t i : order)
     if (cells_of_nodes_[i].x == NO_CELL)
+    {
       away.push_back (i);
-  std::vector<Eigen::Vector3d> feet (away.size ());
-  std::vector<char> has_foot (away.size (), 0);
-  parallelFor (
-      away.size (), options_.threads, [this] { return GridField (field_, options_, grid_.voxelSize ()); },
-      [&] (GridField &worker, std::size_t i)
-      {
-        feet[i] = positions[away[i]].cast<double> ();
-        has_foot[i] = project (worker.local, feet[i]) ? 1 : 0;
-      },
-      [this] (const GridField &worker) { worker.addTo (report_); });
+      feet.push_back (positions[i].cast<double> ());
+    }
+  const std::vector<char> has_foot = findFeet (field_, options_, grid_.voxelSize (), feet, report_);
   for (std::size_t i = 0; i < away.size (); ++i)
     if (has_foot[i])
     {
       cells_of_nodes_[away[i]] = grid_.cellOf (feet[i]);
       addToFront (cells_of_nodes_[away[i]]);
     }
-}
-
-bool
-SurfaceTracker::project (LocalField &local, Eigen::Vector3d &position) const
-{
-  constexpr int STEPS = 4;
-  for (int step = 0; step < STEPS; ++step)
-  {
-    local.gather (position, 0.0);
-    const LocalSample sample = local.sample (position);
-    const double slope = sample.gradient.squaredNorm ();
-    if (!sample.isDefined () || !(slope > 0.0) || !isInReach (local, options_, grid_.voxelSize ()))
-      return false;
-    const Eigen::Vector3d move = (options_.iso_level - sample.value) / slope * sample.gradient;
-    if (!(local.unwarpedLength (move.norm ()) < sample.radius + std::abs (options_.iso_level)))
-      return false;
-    position += move;
-    if (move.norm () < 0.1 * grid_.voxelSize ())
-      return true;
-  }
-  return false;
 }
 
 } // namespace erkpa

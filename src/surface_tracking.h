@@ -84,9 +84,6 @@ private:
   static bool
   findCellNear (GridWindow &window, const GridPoint &cell, GridPoint &found);
 
-  bool
-  project (LocalField &local, Eigen::Vector3d &position) const;
-
   const ImplicitField &field_;
   const PolygonizerOptions &options_;
   SparseGrid &grid_;
