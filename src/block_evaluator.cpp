@@ -1,7 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "block_evaluator.h"
 
+#include <Eigen/Geometry>
+
 #include <cmath>
+#include <cstdint>
 
 namespace erkpa
 {
@@ -29,82 +32,82 @@ isInReach (const LocalField &local, const PolygonizerOptions &options, double vo
 }
 
 void
-BlockEvaluator::evaluate (GridField &worker, GridBlock &block) const
+BlockEvaluator::evaluate (GridField &worker, const int *first_block, const int *last_block) const
 {
   for (const BlockPart &part : parts_)
   {
-    std::uint64_t nodes = block.needed & part.nodes;
-    if (nodes == 0)
-      continue;
-    Eigen::Vector3d center;
-    double extent = 0.0;
-    findBall (block, nodes, center, extent);
-    if (worker.block.gather (center, extent))
-      nodes = evaluateTogether (worker.block, nodes, block);
-    if (nodes == 0)
-      continue;
-    worker.local.gather (center, extent);
-    for (; nodes != 0; nodes &= nodes - 1)
-      evaluateAlone (worker.local, __builtin_ctzll (nodes), block);
+    worker.wanted.clear ();
+    for (const int *index = first_block; index != last_block; ++index)
+    {
+      GridBlock &block = grid_.block (*index);
+      for (std::uint64_t left = block.needed & part.nodes; left != 0; left &= left - 1)
+        worker.wanted.push_back ({&block, __builtin_ctzll (left)});
+    }
+    evaluateWanted (worker);
   }
-  block.needed = 0;
+  for (const int *index = first_block; index != last_block; ++index)
+    grid_.block (*index).needed = 0;
 }
 
-Eigen::Vector3d
-BlockEvaluator::positionOf (const GridBlock &block, int node) const
-{
-  return grid_.position (SparseGrid::pointAt (block, node));
-}
-
-/** \brief A ball around some nodes of a block. */
+/** \brief Evaluate the nodes that are wanted, from one ball around them. */
 void
-BlockEvaluator::findBall (const GridBlock &block, std::uint64_t nodes, Eigen::Vector3d &center, double &extent) const
+BlockEvaluator::evaluateWanted (GridField &worker) const
 {
-  Eigen::Array3i low (3, 3, 3), high (0, 0, 0);
-  for (; nodes != 0; nodes &= nodes - 1)
+  if (worker.wanted.empty ())
+    return;
+  Eigen::AlignedBox3i box;
+  for (const WantedNode &node : worker.wanted)
   {
-    const int node = __builtin_ctzll (nodes);
-    const Eigen::Array3i at (node & 3, (node >> 2) & 3, node >> 4);
-    low = low.min (at);
-    high = high.max (at);
+    const GridPoint point = SparseGrid::pointAt (*node.block, node.node);
+    box.extend (Eigen::Vector3i (point.x, point.y, point.z));
   }
-  const Eigen::Vector3d middle = 0.5 * (low + high).cast<double> ().matrix ();
-  center = grid_.position (block.first) + grid_.voxelSize () * middle;
-  extent = 0.5 * grid_.voxelSize () * (high - low).cast<double> ().matrix ().norm ();
+  const double voxel = grid_.voxelSize ();
+  const Eigen::Vector3d center =
+      grid_.position ({0, 0, 0}) + 0.5 * voxel * (box.min () + box.max ()).cast<double> ();
+  const double extent = 0.5 * voxel * (box.max () - box.min ()).cast<double> ().norm ();
+  if (worker.block.gather (center, extent))
+    evaluateTogether (worker);
+  if (worker.wanted.empty ())
+    return;
+  worker.local.gather (center, extent);
+  for (const WantedNode &node : worker.wanted)
+    evaluateAlone (worker.local, node);
 }
 
-/** \brief Evaluates what has no enrichment; returns the nodes that want LocalField. */
-std::uint64_t
-BlockEvaluator::evaluateTogether (BlockField &field, std::uint64_t nodes, GridBlock &block) const
+/** \brief Evaluate what can be in lanes; the nodes that want LocalField are left. */
+void
+BlockEvaluator::evaluateTogether (GridField &worker) const
 {
-  std::array<int, GridBlock::NODES> taken;
-  std::uint64_t others = 0;
-  for (; nodes != 0; nodes &= nodes - 1)
+  BlockField &field = worker.block;
+  std::vector<WantedNode> &wanted = worker.wanted, &left = worker.left;
+  left.clear ();
+  std::size_t taken = 0;
+  for (const WantedNode node : wanted)
   {
-    const int node = __builtin_ctzll (nodes);
-    const Eigen::Vector3d position = positionOf (block, node);
+    const Eigen::Vector3d position = positionOf (node);
     if (field.canEvaluateAt (position))
     {
-      taken[field.size ()] = node;
+      wanted[taken++] = node;
       field.addPoint (position);
     }
     else
-      others |= std::uint64_t (1) << node;
+      left.push_back (node);
   }
   field.evaluate (false);
-  for (std::size_t i = 0; i < field.size (); ++i)
+  for (std::size_t i = 0; i < taken; ++i)
     if (field.isUnsettled (i))
-      others |= std::uint64_t (1) << taken[i];
+      left.push_back (wanted[i]);
     else
-      block.setValue (taken[i], static_cast<float> (field.value (i) - options_.iso_level), field.isInReach (i));
-  return others;
+      wanted[i].block->setValue (wanted[i].node, static_cast<float> (field.value (i) - options_.iso_level),
+                                 field.isInReach (i));
+  wanted.swap (left);
 }
 
 void
-BlockEvaluator::evaluateAlone (LocalField &field, int node, GridBlock &block) const
+BlockEvaluator::evaluateAlone (LocalField &field, const WantedNode &node) const
 {
-  const double value = field.value (positionOf (block, node)) - options_.iso_level;
-  block.setValue (node, static_cast<float> (value), isInReach (field, options_, grid_.voxelSize ()));
+  const double value = field.value (positionOf (node)) - options_.iso_level;
+  node.block->setValue (node.node, static_cast<float> (value), isInReach (field, options_, grid_.voxelSize ()));
 }
 
 } // namespace erkpa

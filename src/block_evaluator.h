@@ -7,12 +7,17 @@
 
 #include <erkpa/marching_cubes.h>
 
-#include <array>
-#include <cstdint>
 #include <vector>
 
 namespace erkpa
 {
+
+/** \brief A node of a grid whose value is asked for. */
+struct WantedNode
+{
+  GridBlock *block;
+  int node;
+};
 
 /** \brief The field as one thread asks it for the nodes of a grid. */
 struct GridField
@@ -21,6 +26,8 @@ struct GridField
 
   LocalField local; ///< walls so thin that both sides cross the same edge of the grid are thickened
   BlockField block; ///< the quick double, for points it can do; the same
+
+  std::vector<WantedNode> wanted, left; ///< memory for a BlockEvaluator
 
   void
   addTo (PolygonizerReport &report) const
@@ -38,29 +45,33 @@ isInReach (const LocalField &local, const PolygonizerOptions &options, double vo
 class BlockEvaluator
 {
 public:
-  BlockEvaluator (const ImplicitField &field, const PolygonizerOptions &options, const SparseGrid &grid)
+  BlockEvaluator (const ImplicitField &field, const PolygonizerOptions &options, SparseGrid &grid)
       : options_ (options), grid_ (grid), parts_ (partsOfBlock (field.typicalRadius () / grid.voxelSize ()))
   {
   }
 
+  /** \brief Evaluate those of some blocks that share a gathering of the field's nodes: see BlockGroups. */
   void
-  evaluate (GridField &worker, GridBlock &block) const;
+  evaluate (GridField &worker, const int *first_block, const int *last_block) const;
 
 private:
   Eigen::Vector3d
-  positionOf (const GridBlock &block, int node) const;
+  positionOf (const WantedNode &node) const
+  {
+    return grid_.position (SparseGrid::pointAt (*node.block, node.node));
+  }
 
   void
-  findBall (const GridBlock &block, std::uint64_t nodes, Eigen::Vector3d &center, double &extent) const;
-
-  std::uint64_t
-  evaluateTogether (BlockField &field, std::uint64_t nodes, GridBlock &block) const;
+  evaluateWanted (GridField &worker) const;
 
   void
-  evaluateAlone (LocalField &field, int node, GridBlock &block) const;
+  evaluateTogether (GridField &worker) const;
+
+  void
+  evaluateAlone (LocalField &field, const WantedNode &node) const;
 
   const PolygonizerOptions &options_;
-  const SparseGrid &grid_;
+  SparseGrid &grid_;
   const std::vector<BlockPart> &parts_;
 };
 

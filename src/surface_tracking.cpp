@@ -2,6 +2,7 @@
 #include "surface_tracking.h"
 
 #include "block_evaluator.h"
+#include "block_groups.h"
 #include "grid_bits.h"
 #include "surface_feet.h"
 #include "threads.h"
@@ -107,20 +108,23 @@ void
 SurfaceTracker::evaluateRequested ()
 {
   const BlockEvaluator evaluator (field_, options_, grid_);
+  const std::size_t block_count = requested_blocks_.size ();
+  const BlockGroups groups (grid_, std::move (requested_blocks_), field_.typicalRadius () / grid_.voxelSize ());
   // In slices, so that progress shows during the first front, which is the largest by far.
   constexpr std::size_t SLICE = 8192;
-  for (std::size_t first = 0; first < requested_blocks_.size (); first += SLICE)
+  for (std::size_t first = 0; first < groups.size (); first += SLICE)
   {
+    const std::size_t last = std::min (first + SLICE, groups.size ());
     parallelFor (
-        std::min (SLICE, requested_blocks_.size () - first), options_.threads,
-        [this] { return GridField (field_, options_, grid_.voxelSize ()); },
+        last - first, options_.threads, [this] { return GridField (field_, options_, grid_.voxelSize ()); },
         [&] (GridField &worker, std::size_t i)
-        { evaluator.evaluate (worker, grid_.block (requested_blocks_[first + i])); },
+        { evaluator.evaluate (worker, groups.begin (first + i), groups.end (first + i)); },
         [this] (const GridField &worker) { worker.addTo (report_); });
-    evaluated_blocks_ += std::min (SLICE, requested_blocks_.size () - first);
     if (progress_)
-      progress_ (std::min (1.0, static_cast<double> (evaluated_blocks_) / static_cast<double> (grid_.blockCount ())));
+      progress_ (std::min (1.0, static_cast<double> (evaluated_blocks_ + block_count * last / groups.size ()) /
+                                    static_cast<double> (grid_.blockCount ())));
   }
+  evaluated_blocks_ += block_count;
   requested_blocks_.clear ();
 }
 

@@ -2,11 +2,15 @@
 #include "surface_vertices.h"
 
 #include "block_evaluator.h"
+#include "block_groups.h"
 #include "crease_solver.h"
 #include "threads.h"
 
+#include <Eigen/Geometry>
+
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 #include <utility>
 
 namespace erkpa
@@ -22,13 +26,14 @@ constexpr int MAX_STEPS = 12;
 /** \brief An edge of the grid on which f - iso changes its sign, and what is known of the root on it. */
 struct EdgeRoot
 {
+  const GridBlock *block;
   int node, axis;
   bool low_inside;
   double t; ///< where it is sought next, as a share of the edge
   double t_low = 0.0, t_high = 1.0;
 
-  EdgeRoot (int from, int along, double low, double high)
-      : node (from), axis (along), low_inside (low < 0.0), t (std::clamp (low / (low - high), MARGIN, 1.0 - MARGIN))
+  EdgeRoot (const GridBlock &of, int from, int along, double low, double high)
+      : block (&of), node (from), axis (along), low_inside (low < 0.0), t (std::clamp (low / (low - high), MARGIN, 1.0 - MARGIN))
   {
   }
 
@@ -102,25 +107,37 @@ public:
   {
   }
 
+  /** \brief Place the vertices of some blocks that share a gathering of the field's nodes: see BlockGroups. */
   void
-  placeInBlock (GridField &worker, const GridBlock &block) const
+  placeInBlocks (GridField &worker, const int *first_block, const int *last_block) const
   {
     std::vector<EdgeRoot> roots;
     for (const BlockPart &part : parts_)
     {
       roots.clear ();
-      listRoots (block, part.nodes, roots);
+      Eigen::AlignedBox3d box;
+      for (const int *index = first_block; index != last_block; ++index)
+      {
+        const GridBlock &block = grid_.block (*index);
+        const std::size_t before = roots.size ();
+        listRoots (block, part.nodes, roots);
+        if (roots.size () == before)
+          continue;
+        const Eigen::Vector3d low = grid_.position (block.first + part.first);
+        box.extend (low);
+        box.extend (Eigen::Vector3d (low.array () + part.side * grid_.voxelSize ()));
+      }
       if (roots.empty ())
         continue;
-      const double half = 0.5 * part.side * grid_.voxelSize (), extent = std::sqrt (3.0) * half;
-      const Eigen::Vector3d center = grid_.position (block.first + part.first).array () + half;
+      const Eigen::Vector3d center = box.center ();
+      const double extent = 0.5 * box.diagonal ().norm ();
       if (worker.block.gather (center, extent))
-        placeTogether (worker.block, block, roots);
+        placeTogether (worker.block, roots);
       if (roots.empty ())
         continue;
       worker.local.gather (center, extent);
       for (EdgeRoot &root : roots)
-        placeAlone (worker.local, block, root);
+        placeAlone (worker.local, root);
     }
   }
 
@@ -133,23 +150,23 @@ private:
       {
         const int node = __builtin_ctzll (left);
         const GridPlace high = grid_.step ({block.above[0], node}, 1 << axis);
-        roots.emplace_back (node, axis, block.values[static_cast<std::size_t> (node)],
+        roots.emplace_back (block, node, axis, block.values[static_cast<std::size_t> (node)],
                             grid_.block (high.block).values[static_cast<std::size_t> (high.local)]);
       }
   }
 
   Eigen::Vector3d
-  positionOf (const GridBlock &block, const EdgeRoot &root) const
+  positionOf (const EdgeRoot &root) const
   {
-    Eigen::Vector3d position = grid_.position (SparseGrid::pointAt (block, root.node));
+    Eigen::Vector3d position = grid_.position (SparseGrid::pointAt (*root.block, root.node));
     position[root.axis] += root.t * grid_.voxelSize ();
     return position;
   }
 
   static std::size_t
-  vertexOf (const GridBlock &block, const EdgeRoot &root)
+  vertexOf (const EdgeRoot &root)
   {
-    return static_cast<std::size_t> (SparseGrid::vertexOnEdge (block, root.node, root.axis));
+    return static_cast<std::size_t> (SparseGrid::vertexOnEdge (*root.block, root.node, root.axis));
   }
 
   /** \brief All roots of a block by Newton steps from the linear guess, each step for all of them at once.
@@ -158,7 +175,7 @@ private:
    * \param[in,out] roots those that want LocalField are left
    */
   void
-  placeTogether (BlockField &field, const GridBlock &block, std::vector<EdgeRoot> &roots) const
+  placeTogether (BlockField &field, std::vector<EdgeRoot> &roots) const
   {
     constexpr int ROUNDS = 5;
     constexpr double SHORT = 0.03;
@@ -169,7 +186,7 @@ private:
       std::size_t taken = 0;
       for (const EdgeRoot root : roots)
       {
-        const Eigen::Vector3d position = positionOf (block, root);
+        const Eigen::Vector3d position = positionOf (root);
         if (!field.canEvaluateAt (position))
         {
           alone.push_back (root);
@@ -189,7 +206,7 @@ private:
         else if (root.refine (field.value (i) - options_.iso_level, slope) > SHORT)
           roots[left++] = root;
         else
-          store (field, i, positionOf (block, root), vertexOf (block, root));
+          store (field, i, positionOf (root), vertexOf (root));
       }
       roots.erase (roots.begin () + static_cast<std::ptrdiff_t> (left), roots.end ());
     }
@@ -212,19 +229,19 @@ private:
   }
 
   void
-  placeAlone (LocalField &local, const GridBlock &block, EdgeRoot &root) const
+  placeAlone (LocalField &local, EdgeRoot &root) const
   {
     LocalSample sample;
     Eigen::Vector3d position;
     for (int step = 0;; ++step)
     {
-      position = positionOf (block, root);
+      position = positionOf (root);
       sample = local.sample (position);
       if (step == MAX_STEPS || !sample.isDefined () ||
           root.refine (sample.value - options_.iso_level, sample.gradient[root.axis] * grid_.voxelSize ()) == 0.0)
         break;
     }
-    const std::size_t vertex = vertexOf (block, root);
+    const std::size_t vertex = vertexOf (root);
     storeVertex (local, sample, position, vertex, channels_, vertices_);
     if (!vertices_.found.empty ())
       vertices_.found[vertex] = position;
@@ -253,18 +270,20 @@ placeVertices (const ImplicitField &field, const PolygonizerOptions &options, Sp
   if (field.faces () != nullptr)
     vertices.found.resize (vertices.positions.size ());
   const VertexPlacer placer (field, options, grid, vertices);
-  const auto blocks = static_cast<std::size_t> (grid.blockCount ());
+  std::vector<int> blocks (static_cast<std::size_t> (grid.blockCount ()));
+  std::iota (blocks.begin (), blocks.end (), 0);
+  const BlockGroups groups (grid, std::move (blocks), field.typicalRadius () / grid.voxelSize ());
   constexpr std::size_t SLICE = 8192;
-  for (std::size_t first = 0; first < blocks; first += SLICE)
+  for (std::size_t first = 0; first < groups.size (); first += SLICE)
   {
+    const std::size_t last = std::min (first + SLICE, groups.size ());
     parallelFor (
-        std::min (SLICE, blocks - first), options.threads,
-        [&] { return GridField (field, options, grid.voxelSize ()); },
+        last - first, options.threads, [&] { return GridField (field, options, grid.voxelSize ()); },
         [&] (GridField &worker, std::size_t i)
-        { placer.placeInBlock (worker, grid.block (static_cast<int> (first + i))); },
+        { placer.placeInBlocks (worker, groups.begin (first + i), groups.end (first + i)); },
         [&report] (const GridField &worker) { worker.addTo (report); });
     if (progress)
-      progress (static_cast<double> (std::min (blocks, first + SLICE)) / static_cast<double> (blocks));
+      progress (static_cast<double> (last) / static_cast<double> (groups.size ()));
   }
 }
 
