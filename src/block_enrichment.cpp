@@ -130,8 +130,8 @@ BlockEnrichment::evaluatePlaneAtNodes (const SharpPlane &plane, const BlockNodes
   const Eigen::Vector3f gradient = plane.SharpPlane::thetaGradient (origin).cast<float> ();
   values.theta.resize (nodes.count ());
   for (std::size_t i = 0; i < nodes.count (); ++i)
-    values.theta[i] = static_cast<float> (
-        plane.SharpPlane::theta (nodes.position (i).cast<double> () + origin) * inverse_unit_);
+    values.theta[i] =
+        static_cast<float> (plane.SharpPlane::theta (nodes.position (i).cast<double> () + origin) * inverse_unit_);
   for (std::size_t a = 0; a < 3; ++a)
     values.gradient[a].assign (nodes.count (), gradient[static_cast<Eigen::Index> (a)]);
 }

@@ -62,8 +62,7 @@ BlockEvaluator::evaluateWanted (GridField &worker) const
     box.extend (Eigen::Vector3i (point.x, point.y, point.z));
   }
   const double voxel = grid_.voxelSize ();
-  const Eigen::Vector3d center =
-      grid_.position ({0, 0, 0}) + 0.5 * voxel * (box.min () + box.max ()).cast<double> ();
+  const Eigen::Vector3d center = grid_.position ({0, 0, 0}) + 0.5 * voxel * (box.min () + box.max ()).cast<double> ();
   const double extent = 0.5 * voxel * (box.max () - box.min ()).cast<double> ().norm ();
   if (worker.block.gather (center, extent))
     evaluateTogether (worker);

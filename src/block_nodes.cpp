@@ -77,7 +77,8 @@ BlockNodes::boundOfKth (std::size_t k, double guess) const
       count += squared_[i] <= squared ? 1 : 0;
     return static_cast<std::size_t> (count) >= k;
   };
-  int high = static_cast<int> (std::floor (std::log2 (guess) * PER_DOUBLING)), wide = PER_DOUBLING / 4; // most guesses are good
+  int high = static_cast<int> (std::floor (std::log2 (guess) * PER_DOUBLING)),
+      wide = PER_DOUBLING / 4; // most guesses are good
   if (!has_k (high))
     return HUGE_VAL;
   int low = high - wide;

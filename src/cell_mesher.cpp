@@ -82,8 +82,7 @@ private:
     for (std::size_t i = 0; i < size_; ++i)
     {
       const auto a = static_cast<std::size_t> (ring_[i]), b = static_cast<std::size_t> (ring_[(i + 1) % size_]);
-      if (vertices_.side_keys[a] != vertices_.side_keys[b] &&
-          mayCrease (vertices_.normals[a], vertices_.normals[b]))
+      if (vertices_.side_keys[a] != vertices_.side_keys[b] && mayCrease (vertices_.normals[a], vertices_.normals[b]))
         return true;
     }
     return false;

@@ -18,8 +18,8 @@ turnBetween (const Eigen::Vector3d &a, const Eigen::Vector3d &b)
   return std::atan2 (a.cross (b).norm (), a.dot (b));
 }
 
-/** \brief Whether there may be a crease between vertices on different sides of a sharp surface, by their normals: a round
- * edge turns, too. */
+/** \brief Whether there may be a crease between vertices on different sides of a sharp surface, by their normals: a
+ * round edge turns, too. */
 inline bool
 mayCrease (const Eigen::Vector3d &normal, const Eigen::Vector3d &other)
 {

@@ -45,8 +45,8 @@ public:
   void
   select (const Support &support, const Eigen::Vector3d &x);
 
-  /** \brief See the evaluation point from the side of every sharp surface on which \a place lies (in the input's frame):
-   * the terms go on smoothly beyond Γ. Null, and after select (): from where it is.
+  /** \brief See the evaluation point from the side of every sharp surface on which \a place lies (in the input's
+   * frame): the terms go on smoothly beyond Γ. Null, and after select (): from where it is.
    */
   void
   lookFrom (const Eigen::Vector3d *place);

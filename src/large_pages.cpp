@@ -21,7 +21,8 @@ preferLargePages (std::size_t bytes)
 {
 #if defined(__GLIBC__) && defined(MADV_HUGEPAGE)
   constexpr std::uintptr_t PAGE = std::uintptr_t (1) << 21;
-  if (bytes < 2 * PAGE || bytes > (std::size_t (1) << 30) || mallopt (M_MMAP_THRESHOLD, INT_MAX) == 0 || mallopt (M_TRIM_THRESHOLD, INT_MAX) == 0)
+  if (bytes < 2 * PAGE || bytes > (std::size_t (1) << 30) || mallopt (M_MMAP_THRESHOLD, INT_MAX) == 0 ||
+      mallopt (M_TRIM_THRESHOLD, INT_MAX) == 0)
     return false;
   // The end of the heap: what is freed there is kept, and handed out again piece by piece.
   void *heap = std::malloc (bytes);

@@ -73,7 +73,7 @@ public:
   /** \brief What is wanted as the gradient. */
   enum class Slope
   {
-    EXACT,    ///< ∇f
+    EXACT,     ///< ∇f
     OF_THE_FIT ///< its coefficients held, as if the weights did not change with x: quicker, and tells edges as well
   };
 

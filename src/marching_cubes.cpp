@@ -194,8 +194,7 @@ meshCreases (const ImplicitField &field, const PolygonizerOptions &options, cons
              std::vector<Triangle> &triangles, SurfaceVertices &vertices, PolygonizerReport &report)
 {
   const StageClock clock (report.seconds_creases);
-  const std::vector<MeshedLoop> loops =
-      meshLoops (field, options, mixed_loops, report.voxel_size, vertices, report);
+  const std::vector<MeshedLoop> loops = meshLoops (field, options, mixed_loops, report.voxel_size, vertices, report);
   return addCreases (report.voxel_size, mixed_loops, loops, options.threads, triangles, vertices);
 }
 

@@ -149,7 +149,7 @@ private:
   std::vector<int> ball_;
   std::vector<float> squared_;
   std::vector<int> strangers_, front_, linked_;
-  bool meets_other_ = false;                    // whether the group last followed is part of one that was left before
+  bool meets_other_ = false; // whether the group last followed is part of one that was left before
 };
 
 } // namespace

@@ -116,16 +116,15 @@ public:
     constexpr double SHARP = 0.35, MARGIN = 0.25; // radians; share of the angle
     gather (near, i, k_);
     const Eigen::Vector3f &own = points_.normals[i];
-    const auto normal = [this] (int j) -> const Eigen::Vector3f & { return points_.normals[static_cast<std::size_t> (j)]; };
+    const auto normal = [this] (int j) -> const Eigen::Vector3f &
+    { return points_.normals[static_cast<std::size_t> (j)]; };
     const auto farther = [&] (int a, int b) { return own.dot (normal (a)) > own.dot (normal (b)); };
     const auto farthest = std::max_element (near.nodes.begin (), near.nodes.end (), farther);
     const double angle = farthest == near.nodes.end () ? 0.0 : angleBetween (own, normal (*farthest));
     known = angle > SHARP;
-    const auto is_between = [angle] (double turn)
-    { return turn > MARGIN * angle && turn < (1.0 - MARGIN) * angle; };
+    const auto is_between = [angle] (double turn) { return turn > MARGIN * angle && turn < (1.0 - MARGIN) * angle; };
     return known && std::any_of (near.nodes.begin (), near.nodes.end (),
-                                 [&] (int j)
-                                 {
+                                 [&] (int j) {
                                    return is_between (angleBetween (own, normal (j))) &&
                                           is_between (angleBetween (normal (*farthest), normal (j)));
                                  });

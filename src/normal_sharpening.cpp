@@ -59,14 +59,13 @@ areBlended (const NeighborSearch &search, const NormalScale &scale, int threads,
   const std::size_t step = rough.size () / ENOUGH + 1;
   const NormalSharpener sharpener (search, scale, threads, points);
   std::atomic<int> at_edges{0}, blended{0};
-  parallelFor (
-      (rough.size () + step - 1) / step, threads, [] { return Neighborhood (); },
-      [&] (Neighborhood &near, std::size_t r)
-      {
-        bool is_at_edge = false;
-        blended += sharpener.isBlended (near, rough[r * step], is_at_edge) ? 1 : 0;
-        at_edges += is_at_edge ? 1 : 0;
-      });
+  parallelFor ((rough.size () + step - 1) / step, threads, [] { return Neighborhood (); },
+               [&] (Neighborhood &near, std::size_t r)
+               {
+                 bool is_at_edge = false;
+                 blended += sharpener.isBlended (near, rough[r * step], is_at_edge) ? 1 : 0;
+                 at_edges += is_at_edge ? 1 : 0;
+               });
   return SHARE * blended > at_edges;
 }
 

@@ -102,7 +102,8 @@ makeField (const std::shared_ptr<const OrientedPoints> &points, const NeighborSe
   Outcome outcome = checkWarp (*points, options.field.warp.get ());
   if (!outcome.ok ())
     return outcome;
-  const auto made = std::make_shared<ImplicitField> (points, search, options.field, options.polygonizer.threads, layout);
+  const auto made =
+      std::make_shared<ImplicitField> (points, search, options.field, options.polygonizer.threads, layout);
   const bool by_nearest = made->options ().k > 0;
   report.k = by_nearest ? made->options ().k : 0;
   report.radius = by_nearest ? 0.0 : made->supportSize ().typical ();

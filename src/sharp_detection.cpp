@@ -84,7 +84,8 @@ optionsFor (const OrientedPoints &points, const PointLayout &layout, double angl
   if (k <= CLEAN_SUPPORT)
     return options;
   constexpr double SIGMAS = 3.0, NODES_PER_SUPPORT = 2.7;
-  options.chord = std::min (SIGMAS * positionNoise (*layout.search, options.spacing, threads, points), 1.2 * options.spacing);
+  options.chord =
+      std::min (SIGMAS * positionNoise (*layout.search, options.spacing, threads, points), 1.2 * options.spacing);
   options.ball = static_cast<int> (NODES_PER_SUPPORT * k);
   options.smallest = 8;
   return options;

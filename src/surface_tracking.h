@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "local_field.h"
 #include "grid_window.h"
+#include "local_field.h"
 #include "sparse_grid.h"
 
 #include <erkpa/marching_cubes.h>

@@ -33,7 +33,8 @@ struct EdgeRoot
   double t_low = 0.0, t_high = 1.0;
 
   EdgeRoot (const GridBlock &of, int from, int along, double low, double high)
-      : block (&of), node (from), axis (along), low_inside (low < 0.0), t (std::clamp (low / (low - high), MARGIN, 1.0 - MARGIN))
+      : block (&of), node (from), axis (along), low_inside (low < 0.0),
+        t (std::clamp (low / (low - high), MARGIN, 1.0 - MARGIN))
   {
   }
 

@@ -184,8 +184,8 @@ boxWithFaces (Order order)
 {
   const auto points = shapes::points (shapes::box (6000, {0.5, 0.35, 0.25}));
   FieldOptions options = optionsOf (order, 20);
-  EXPECT_TRUE (erkpa::findSharpSurfaces (*points, erkpa::PointLayout (*points, 0), erkpa::SharpOptions (),
-                                         0, options.sharp_surfaces)
+  EXPECT_TRUE (erkpa::findSharpSurfaces (*points, erkpa::PointLayout (*points, 0), erkpa::SharpOptions (), 0,
+                                         options.sharp_surfaces)
                    .ok ());
   EXPECT_GE (options.sharp_surfaces.size (), 12u);
   return shapes::field (points, options);

@@ -270,7 +270,7 @@ private:
     const Corner &corner = near_.corners[k];
     const Surface &a = *near_.surfaces[corner.a], &b = *near_.surfaces[corner.b];
     const B zero (0.0f), one (1.0f), height_a = B (corner.scale_a) * B::load_unaligned (a.theta_at + first),
-            height_b = B (corner.scale_b) * B::load_unaligned (b.theta_at + first);
+                                     height_b = B (corner.scale_b) * B::load_unaligned (b.theta_at + first);
     const auto holds_x = height_a >= zero && height_b >= zero;
     const B sign = a.reversible && b.reversible ? xsimd::select (holds_x, -one, one) : one;
     is_behind_[k] = sign < zero;
