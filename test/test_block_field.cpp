@@ -191,6 +191,42 @@ boxWithFaces (Order order)
   return shapes::field (points, options);
 }
 
+/** \brief Where points are far sparser on one side of a ball, supports reach farther than its middle says. */
+TEST_F (BlockFieldTest, AgreesWithTheDefinitionWhereTheDensityOfThePointsJumps)
+{
+  shapes::Samples samples;
+  for (int i = 0; i < 6000; ++i)
+  {
+    const Vector3d p = randomPoint (1.0);
+    if (p[0] < 0.0 || i % 40 == 0)
+      samples.add ({p[0], p[1], 0.0}, Vector3d::UnitZ ());
+  }
+  const auto field = shapes::field (samples, optionsOf (Order::SPHERICAL, 20));
+  std::size_t engines = 0;
+  const erkpa::lanes::Engine *const *engine = erkpa::lanes::engines (engines);
+  for (std::size_t e = 0; e < engines; ++e)
+  {
+    BlockField block (*field, *engine[e]);
+    LocalField local (*field);
+    double least = HUGE_VAL, most = 0.0;
+    for (double y = -0.6; y <= 0.6; y += 0.3)
+    {
+      const std::vector<Vector3d> points = evaluateAround (block, {-0.05, y, 0.0}, 4.0 * field->spacing ());
+      for (std::size_t i = 0; i < points.size (); ++i)
+      {
+        local.gather (points[i], 0.0);
+        const LocalSample sample = local.sample (points[i]);
+        ASSERT_TRUE (block.isSettled (i));
+        EXPECT_NEAR (sample.radius, block.radius (i), 1e-5 * sample.radius);
+        EXPECT_NEAR (sample.value, block.value (i), 1e-4 * sample.radius);
+        least = std::min (least, sample.radius);
+        most = std::max (most, sample.radius);
+      }
+    }
+    EXPECT_GT (most, 2.0 * least) << "or nothing was tried";
+  }
+}
+
 /** \brief Around edges and corners values come from two and three faces, and walls are thickened. */
 TEST_F (BlockFieldTest, AgreesWithTheDefinitionWhereFacesMeet)
 {

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "erkpa_tests.h"
 
+#include <erkpa/large_pages.h>
+
 #include <pcl/search/kdtree.h>
 #include <pcl/search/octree.h>
 
@@ -481,6 +483,19 @@ TEST (Erkpa, KeepsTheFirstOfManyPointsThatRepeatEachOther)
     ASSERT_EQ (one.positions[i], (positions[i].cast<double> () - one.origin).cast<float> ());
   ASSERT_TRUE (erkpa::collectPoints (view, many, counts, 4).ok ());
   EXPECT_EQ (one.positions, many.positions);
+}
+
+TEST (Erkpa, MakesTheSameMeshInLargePages)
+{
+  ERKPA<pcl::PointNormal> erkpa;
+  erkpa.setInputCloud (shapes::cloud<pcl::PointNormal> (shapes::sphere (3000)));
+  pcl::PolygonMesh before, after;
+  erkpa.reconstruct (before);
+  erkpa::preferLargePages ();
+  erkpa.reconstruct (after);
+  ASSERT_FALSE (before.polygons.empty ());
+  EXPECT_EQ (before.cloud.data, after.cloud.data);
+  EXPECT_FALSE (erkpa::preferLargePages (1000)) << "less than two of them";
 }
 
 TEST (Erkpa, RefusesAnEmptyCloudWhoseFieldsAreKnownAtRunTime)

@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "cell_loops.h"
 #include "loop_triangulation.h"
+#include "plane_meeting.h"
 #include "shapes.h"
+#include "surface_feet.h"
 
 #include <erkpa/marching_cubes.h>
 
@@ -272,6 +274,57 @@ TEST (Polygonizer, GivesTheSameMeshInAnyNumberOfThreads)
   EXPECT_EQ (one.vertices, three.vertices);
   EXPECT_EQ (one.normals, three.normals);
   EXPECT_EQ (one.triangles, three.triangles);
+}
+
+TEST (Polygonizer, MakesTheSameSphereOfSupportsThatAreFarLargerThanVoxels)
+{
+  erkpa::FieldOptions large;
+  large.radius = 0.6;
+  const auto field = shapes::field (shapes::sphere (3000), large);
+  PolygonizerOptions options;
+  options.voxel_size = 0.03; // a twentieth of the radius: cubes of blocks share their points
+  options.threads = 1;
+  const TriangleMesh mesh = meshOf (*field, options);
+  EXPECT_MESH_CONTRACT (mesh, true);
+  EXPECT_EQ (erkpa::measureTopology (mesh).euler, 2);
+  EXPECT_NEAR (shapes::volume (mesh), 4.0 / 3.0 * M_PI, 0.005 * 4.0 / 3.0 * M_PI);
+  options.threads = 3;
+  EXPECT_EQ (mesh.vertices, meshOf (*field, options).vertices);
+}
+
+TEST (SurfaceFeet, AreWhereTheSurfaceIsNearestAndMissingWhereThereIsNone)
+{
+  const auto field = shapes::field (shapes::sphere (3000));
+  const double off = 0.5 * field->typicalRadius (), voxel = 0.02;
+  std::vector<Vector3d> points;
+  std::vector<Vector3d> directions;
+  for (int i = 0; i < 200; ++i)
+  {
+    directions.push_back (field->points ().positions[static_cast<std::size_t> (10 * i)].cast<double> ().normalized ());
+    points.push_back ((1.0 + (i % 2 == 0 ? off : -off)) * directions.back ());
+  }
+  points.emplace_back (5.0, 0.0, 0.0);
+  erkpa::PolygonizerReport report;
+  const std::vector<char> has_foot = erkpa::findFeet (*field, {}, voxel, points, report);
+  ASSERT_EQ (has_foot.size (), points.size ());
+  for (std::size_t i = 0; i < directions.size (); ++i)
+  {
+    EXPECT_TRUE (has_foot[i]);
+    EXPECT_LT ((points[i] - directions[i]).norm (), 0.1 * voxel);
+  }
+  EXPECT_FALSE (has_foot.back ());
+}
+
+TEST (PlaneMeeting, IsTheCornerOfThreePlanesAndTheNearestPointOfFewer)
+{
+  erkpa::PlaneMeeting meeting;
+  meeting.add (Vector3d::UnitX (), 1.0);
+  EXPECT_LT ((meeting.point (0.05) - Vector3d (1.0, 0.0, 0.0)).norm (), 1e-12);
+  meeting.add (Vector3d (1.0, 1e-3, 0.0).normalized (), 1.0); // as good as the same
+  EXPECT_LT ((meeting.point (0.05) - Vector3d (1.0, 0.0, 0.0)).norm (), 2e-3);
+  meeting.add (Vector3d (1.0, 1.0, 0.0).normalized (), 3.0 / std::sqrt (2.0));
+  meeting.add (Vector3d (0.0, 0.6, 0.8), 0.0);
+  EXPECT_LT ((meeting.point (0.05) - Vector3d (1.0, 2.0, -1.5)).norm (), 5e-3);
 }
 
 TEST (Polygonizer, EvaluatesAboutAsOftenAsTheSurfaceIsLarge)
