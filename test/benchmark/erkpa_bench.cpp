@@ -6,6 +6,7 @@
 #include "bench_table.h"
 #include "machine.h"
 
+#include <erkpa/large_pages.h>
 #include <erkpa/version.h>
 
 #include <boost/program_options.hpp>
@@ -168,6 +169,7 @@ run (int argc, char **argv)
 int
 main (int argc, char **argv)
 {
+  erkpa::preferLargePages ();
   try
   {
     return run (argc, argv);
