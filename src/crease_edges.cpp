@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "crease_edges.h"
 
+#include "crease_geometry.h"
 #include "mesh_intersections.h"
 #include "threads.h"
 
@@ -141,29 +142,10 @@ private:
     return static_cast<int> (loop) == one ? center (other) : center (one);
   }
 
-  Eigen::Vector3d
-  areaOf (int a, int b, int c) const
-  {
-    const auto at = [this] (int v) { return vertices_.positions[static_cast<std::size_t> (v)]; };
-    return (at (b) - at (a)).cross (at (c) - at (a));
-  }
-
-  /** \brief Whether a triangle looks away from where the surface does. */
   bool
   looksAway (int a, int b, int c, const Eigen::Vector3d &normal) const
   {
-    constexpr double LEAST = 0.2; // cosine; a triangle across an edge of the surface has more
-    constexpr double FLAT = 1e-3; // height over length: a vertex of a face may happen to lie on the crease
-    const Eigen::Vector3d area = areaOf (a, b, c);
-    const auto length = [this] (int v, int w)
-    {
-      return (vertices_.positions[static_cast<std::size_t> (v)] - vertices_.positions[static_cast<std::size_t> (w)])
-          .norm ();
-    };
-    const double longest = std::max ({length (a, b), length (b, c), length (c, a)});
-    if (area.norm () < FLAT * longest * longest)
-      return false;
-    return area.dot (normal) < LEAST * area.norm () * normal.norm ();
+    return erkpa::looksAway ({a, b, c}, normal, vertices_);
   }
 
   const Eigen::Vector3d &
@@ -240,7 +222,7 @@ private:
     for (std::size_t v = 0; v < vertices_.found.size (); ++v)
       is_outside[v] = vertices_.found[v] != vertices_.positions[v] ? 1 : 0;
     for (std::size_t i = 0; i < loops_.size (); ++i)
-      if (on_crease_[i] && !isInsideCell (i))
+      if (on_crease_[i] && !isInsideCell (centers_[i], loops_[i], voxel_, vertices_))
         is_outside[static_cast<std::size_t> (centers_[i])] = 1;
     std::vector<int> suspects;
     for (std::size_t t = vertices_.found.empty () ? before_loops_ : 0; t < triangles_.size (); ++t)
@@ -248,28 +230,6 @@ private:
                        [&] (int v) { return is_outside[static_cast<std::size_t> (v)] != 0; }))
         suspects.push_back (static_cast<int> (t));
     return suspects;
-  }
-
-  /** \brief Whether the crease vertex of a loop lies in its cell, as the places of the ring on the cell's edges say. */
-  bool
-  isInsideCell (std::size_t loop) const
-  {
-    const CellLoop &of = loops_[loop];
-    const Eigen::Vector3d &center = vertices_.positions[static_cast<std::size_t> (centers_[loop])];
-    for (std::size_t i = 0; i < of.ring.size (); ++i)
-    {
-      const CellEdge edge = cellEdge (of.edges[i]);
-      const auto v = static_cast<std::size_t> (of.ring[i]);
-      const Eigen::Vector3d &place = v < vertices_.found.size () ? vertices_.found[v] : vertices_.positions[v];
-      for (int axis = 0; axis < 3; ++axis)
-        if (axis != edge.axis)
-        {
-          const double from_low = center[axis] - place[axis] + ((edge.corner >> axis & 1) != 0 ? voxel_ : 0.0);
-          if (from_low < 0.0 || from_low > voxel_)
-            return false;
-        }
-    }
-    return true;
   }
 
   /** \brief Appends the triangles of all loops, and for now no more than the positions of vertices in their middles. */

@@ -109,12 +109,12 @@ printRow (const Row &row)
 void
 printFoot (const Plan &plan)
 {
-  std::printf (
-      "\nSeconds: from the cloud to the pcl::PolygonMesh, of the fastest of %d; sharp: finding edges; grid:\n"
-      "following the surface; cells: triangles in them, and borders; slivers: removing them; output: the\n"
-      "pcl::PolygonMesh. CPU s: of all threads together. nodes: in the support of an evaluation. peak MB: of the process, cloud\n"
-      "and mesh included. speed-up: over %d thread%s. Poisson: its time over ERKPA's. Both are medians.\n",
-      plan.repeats, plan.threads.front (), plan.threads.front () == 1 ? "" : "s");
+  std::printf ("\nSeconds: from the cloud to the pcl::PolygonMesh, of the fastest of %d; sharp: finding edges; grid:\n"
+               "following the surface; cells: triangles in them, and borders; slivers: removing them; output: the\n"
+               "pcl::PolygonMesh. CPU s: of all threads together. nodes: in the support of an evaluation. peak MB: of "
+               "the process, cloud\n"
+               "and mesh included. speed-up: over %d thread%s. Poisson: its time over ERKPA's. Both are medians.\n",
+               plan.repeats, plan.threads.front (), plan.threads.front () == 1 ? "" : "s");
 }
 
 } // namespace bench

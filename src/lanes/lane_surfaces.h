@@ -1,0 +1,62 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "lanes.h"
+
+#include <xsimd/xsimd.hpp>
+
+namespace erkpa::lanes
+{
+
+/** \brief Of the sharp surfaces near a ball those that may pass between the nodes of a lane's support. */
+template <typename B>
+struct LaneSurfaces
+{
+  static constexpr int MAX_CORNERS = static_cast<int> (SharpSurfaces::MAX_PENCILS);
+
+  /** \brief The term of three surfaces that meet: min (scale_a a, scale_b b), where that is positive. */
+  struct Corner
+  {
+    int a, b, c;
+    float scale_a, scale_b;
+  };
+
+  int count = 0, corner_count = 0;
+  const Surface *surfaces[MAX_SURFACES];
+  int numbers[MAX_SURFACES]; ///< places among those that were given
+  Corner corners[MAX_CORNERS];
+
+  /** \param[in] first place of the evaluation point in the first lane
+   * \param[in] radius ε
+   */
+  LaneSurfaces (const SharpSurfaces &sharp, std::size_t first, B radius)
+  {
+    int place[MAX_SURFACES]; // of a surface among those kept
+    for (std::size_t s = 0; s < sharp.count; ++s)
+    {
+      place[s] = passesSupport (sharp.surfaces[s], first, radius) ? count : -1;
+      if (place[s] < 0)
+        continue;
+      surfaces[count] = &sharp.surfaces[s];
+      numbers[count++] = static_cast<int> (s);
+    }
+    for (std::size_t p = 0; p < sharp.pencil_count; ++p)
+    {
+      const Pencil &pencil = sharp.pencils[p];
+      const int a = place[pencil.surfaces[0]], b = place[pencil.surfaces[1]], c = place[pencil.surfaces[2]];
+      if (a >= 0 && b >= 0 && c >= 0)
+        corners[corner_count++] = {a, b, c, pencil.scale_a, pencil.scale_b};
+    }
+  }
+
+private:
+  /** \brief θ of a reversible surface, a plane, is a distance. */
+  static bool
+  passesSupport (const Surface &surface, std::size_t first, B radius)
+  {
+    const B theta = B::load_unaligned (surface.theta_at + first);
+    return !surface.reversible || xsimd::any (xsimd::abs (theta) <= B (1.00001f) * radius);
+  }
+};
+
+} // namespace erkpa::lanes
