@@ -19,7 +19,7 @@ namespace erkpa
 bool
 preferLargePages (std::size_t bytes)
 {
-#if defined(__GLIBC__) && defined(MADV_HUGEPAGE)
+#if defined(__GLIBC__) && defined(MADV_HUGEPAGE) && !defined(__SANITIZE_ADDRESS__) // which has its own malloc
   constexpr std::uintptr_t PAGE = std::uintptr_t (1) << 21;
   if (bytes < 2 * PAGE || bytes > (std::size_t (1) << 30) || mallopt (M_MMAP_THRESHOLD, INT_MAX) == 0 ||
       mallopt (M_TRIM_THRESHOLD, INT_MAX) == 0)
