@@ -62,7 +62,7 @@ ImplicitField::ImplicitField (std::shared_ptr<const OrientedPoints> points, Neig
   const double spacing = layout->spacing;
   grid_search_ = layout->search;
   if (options_.k == 0 && SupportSize::kindOf (*points_, options_) == SupportSize::Kind::NEAREST)
-    options_.k = layout->k;
+    options_.k = options_.sharp_surfaces.empty () ? layout->k : layout->k_within_faces;
   support_size_ = std::make_shared<const SupportSize> (*points_, options_, spacing);
   warpPositions ();
   spacing_ = options_.warp ? measureSpacing (warped_positions_, *warped_search_, threads) : spacing;

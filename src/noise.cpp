@@ -97,10 +97,10 @@ measureSpacing (const std::vector<Eigen::Vector3f> &positions, const NeighborSea
                                 }));
 }
 
-int
-chooseSupportSize (const OrientedPoints &points, const NeighborSearch &search, int threads)
+SupportSizes
+chooseSupportSizes (const OrientedPoints &points, const NeighborSearch &search, int threads)
 {
-  constexpr double TILT = 0.01; // radians
+  constexpr double TILT = 0.01, WITHIN_FACES = 0.0085; // radians
   constexpr std::array<int, 7> SIZES{CLEAN_SUPPORT, 28, 40, 56, 80, 112, 160};
   using Tilts = std::array<double, SIZES.size ()>; // negative where there are fewer neighbours
   Tilts none;
@@ -118,15 +118,22 @@ chooseSupportSize (const OrientedPoints &points, const NeighborSearch &search, i
         }
         return of_node;
       });
+  std::array<double, SIZES.size ()> medians{};
   for (std::size_t i = 0; i < SIZES.size (); ++i)
   {
     std::vector<double> of_size;
     for (const Tilts &of_node : tilts)
       of_size.push_back (of_node[i]);
-    if (median (of_size) <= TILT)
-      return SIZES[i];
+    medians[i] = median (of_size);
   }
-  return SIZES.back ();
+  const auto least_below = [&] (double tilt)
+  {
+    for (std::size_t i = 0; i + 1 < SIZES.size (); ++i)
+      if (medians[i] <= tilt)
+        return SIZES[i];
+    return SIZES.back ();
+  };
+  return {least_below (TILT), least_below (WITHIN_FACES)};
 }
 
 } // namespace erkpa

@@ -16,13 +16,21 @@ constexpr int CLEAN_SUPPORT = 20;
 double
 measureSpacing (const std::vector<Eigen::Vector3f> &positions, const NeighborSearch &search, int threads);
 
+/** \brief How many neighbours are fitted together. */
+struct SupportSizes
+{
+  int k = CLEAN_SUPPORT;            ///< where edges are not known: more would round them
+  int within_faces = CLEAN_SUPPORT; ///< where faces are fitted apart
+};
+
 /** \brief How many neighbours it takes to average the noise out.
  *
  * The noise is the thickness of small neighbourhoods: the standard deviation of the 10 nearest nodes along their
  * thinnest direction. A fit to k nodes within r tilts by about noise / (r sqrt k). Takes the smallest k, from
- * CLEAN_SUPPORT on, for which this is below 0.01 in the median. It does not depend on the number of threads.
+ * CLEAN_SUPPORT on, for which this is below 0.01 in the median, or 0.0085 within faces. It does not depend on the
+ * number of threads.
  */
-int
-chooseSupportSize (const OrientedPoints &points, const NeighborSearch &search, int threads);
+SupportSizes
+chooseSupportSizes (const OrientedPoints &points, const NeighborSearch &search, int threads);
 
 } // namespace erkpa

@@ -8,9 +8,11 @@ namespace erkpa
 {
 
 PointLayout::PointLayout (const OrientedPoints &points, int threads)
-    : grid (makePointGrid (points.positions, threads, spacing)), search (makeGridSearch (grid)),
-      k (chooseSupportSize (points, *search, threads))
+    : grid (makePointGrid (points.positions, threads, spacing)), search (makeGridSearch (grid))
 {
+  const SupportSizes sizes = chooseSupportSizes (points, *search, threads);
+  k = sizes.k;
+  k_within_faces = sizes.within_faces;
 }
 
 } // namespace erkpa

@@ -85,7 +85,7 @@ EdgeFinder::EdgeFinder (const OrientedPoints &points, double tolerance) : points
   spacing_ = measureSpacing (points.positions, *search, 1);
   tolerance_ = tolerance > 0.0 ? tolerance : 0.5 * spacing_;
   near_ = NEAR * spacing_ + tolerance_;
-  support_ = spacing_ * std::sqrt (chooseSupportSize (points, *search, 1) / M_PI);
+  support_ = spacing_ * std::sqrt (chooseSupportSizes (points, *search, 1).within_faces / M_PI);
 }
 
 void

@@ -188,3 +188,18 @@ TEST (NormalSmoothing, KnowsTheNoiseOfThePositionsAndTakesNoCurvatureForIt)
                  0.15 * noise + 0.005);
   }
 }
+
+/** \brief More neighbours would round edges, where these are not known. */
+TEST (PointLayout, TakesMoreNeighborsAgainstNoiseWhereFacesAreFittedApart)
+{
+  int more = 0;
+  for (const double noise : {0.0, 0.05, 0.1, 0.15, 0.2, 0.25, 0.3})
+  {
+    const Estimated box (shapes::box (4000, {1.0, 0.7, 0.5}), noise);
+    const erkpa::PointLayout layout (box.points, 0);
+    EXPECT_GE (layout.k_within_faces, layout.k);
+    EXPECT_TRUE (noise > 0.0 || layout.k_within_faces == erkpa::CLEAN_SUPPORT);
+    more += layout.k_within_faces > layout.k ? 1 : 0;
+  }
+  EXPECT_GT (more, 0);
+}

@@ -24,7 +24,8 @@ struct PointLayout
   double spacing = 0.0;                  ///< typical distance between neighbouring points; 0 where they coincide
   std::shared_ptr<const PointGrid> grid; ///< over their positions
   NeighborSearch::ConstPtr search;       ///< by this grid: where every point asks, it is quicker than a tree
-  int k;                                 ///< neighbours it takes to average the noise out
+  int k = 0;                             ///< neighbours it takes to average the noise out
+  int k_within_faces = 0;                ///< the same where sharp edges are known, which it does not round
 };
 
 } // namespace erkpa
