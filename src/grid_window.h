@@ -48,7 +48,8 @@ public:
   find (const GridPoint &point)
   {
     const int x = point.x - first_.x + 4, y = point.y - first_.y + 4, z = point.z - first_.z + 4;
-    int &block = blocks_[static_cast<std::size_t> ((x >> 2) + 3 * (y >> 2) + 9 * (z >> 2))];
+    const int place = (x >> 2) + 3 * (y >> 2) + 9 * (z >> 2);
+    int &block = blocks_[static_cast<std::size_t> (place)];
     if (block == UNKNOWN)
       block = lookUp (point, {x >> 2, y >> 2, z >> 2});
     return {block, (x & 3) | (y & 3) << 2 | (z & 3) << 4};

@@ -28,8 +28,8 @@ preferLargePages (std::size_t bytes)
   void *heap = std::malloc (bytes);
   if (heap == nullptr)
     return false;
-  const std::uintptr_t start = (reinterpret_cast<std::uintptr_t> (heap) + PAGE - 1) & ~(PAGE - 1);
-  const bool agreed = madvise (reinterpret_cast<void *> (start), bytes - PAGE, MADV_HUGEPAGE) == 0;
+  const std::uintptr_t offset = PAGE - reinterpret_cast<std::uintptr_t> (heap) % PAGE; // to where a page begins
+  const bool agreed = madvise (static_cast<char *> (heap) + offset, bytes - PAGE, MADV_HUGEPAGE) == 0;
   std::free (heap);
   return agreed;
 #else

@@ -122,6 +122,7 @@ chooseSupportSizes (const OrientedPoints &points, const NeighborSearch &search, 
   for (std::size_t i = 0; i < SIZES.size (); ++i)
   {
     std::vector<double> of_size;
+    of_size.reserve (tilts.size ());
     for (const Tilts &of_node : tilts)
       of_size.push_back (of_node[i]);
     medians[i] = median (of_size);

@@ -120,9 +120,9 @@ SurfaceTracker::evaluateRequested ()
         [&] (GridField &worker, std::size_t i)
         { evaluator.evaluate (worker, groups.begin (first + i), groups.end (first + i)); },
         [this] (const GridField &worker) { worker.addTo (report_); });
+    const std::size_t evaluated = evaluated_blocks_ + block_count * last / groups.size ();
     if (progress_)
-      progress_ (std::min (1.0, static_cast<double> (evaluated_blocks_ + block_count * last / groups.size ()) /
-                                    static_cast<double> (grid_.blockCount ())));
+      progress_ (std::min (1.0, static_cast<double> (evaluated) / static_cast<double> (grid_.blockCount ())));
   }
   evaluated_blocks_ += block_count;
   requested_blocks_.clear ();
