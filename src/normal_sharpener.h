@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include "neighborhood.h"
 #include "normal_sharpening.h"
 #include "normal_smoothing.h"
 #include "threads.h"
@@ -18,19 +19,6 @@ namespace erkpa
 
 constexpr std::size_t FEWEST = 6;         // points of a plane
 constexpr std::size_t FOR_A_QUADRIC = 10; // points: its six terms leave enough to tell whether it fits
-
-/** \brief The neighbours of a point that may share a face with it, nearest first, with weights for a fit. */
-struct Neighborhood
-{
-  std::vector<int> nodes;
-  std::vector<Eigen::Vector3f> positions;
-  std::vector<float> weights;
-
-  // of the query
-  std::vector<int> indices;
-  std::vector<float> squared_distances;
-  std::vector<std::pair<float, int>> order;
-};
 
 inline double
 angleBetween (const Eigen::Vector3f &a, const Eigen::Vector3f &b)

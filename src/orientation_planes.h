@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include "neighborhood.h"
+
 #include <erkpa/neighbor_search.h>
 #include <erkpa/oriented_points.h>
 
@@ -14,18 +16,9 @@
 namespace erkpa
 {
 
-/** \brief The neighbours of a point, nearest (the point itself) first, with weights for a fit. */
-struct FacetNeighborhood
+/** \brief The point itself is the first of them. */
+struct FacetNeighborhood : Neighborhood
 {
-  std::vector<int> nodes;
-  std::vector<Eigen::Vector3f> positions;
-  std::vector<float> weights;
-
-  // of the query
-  std::vector<int> indices;
-  std::vector<float> squared_distances;
-  std::vector<std::pair<float, int>> order;
-
   /** \brief The \a k nearest nodes of node \a i, all of weight 1. */
   void
   gather (const OrientedPoints &points, const NeighborSearch &search, std::size_t i, int k);

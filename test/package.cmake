@@ -31,23 +31,16 @@ set_tests_properties(package.consumer_pkg_config PROPERTIES TIMEOUT 2400)
 set_tests_properties(package.consumer package.consumer_avx2 package.consumer_pkg_config
   PROPERTIES FIXTURES_REQUIRED stage)
 
-# A static library has no linker map to protect it: there all code must be built with the same flags, as is the rule
-# with Eigen. So everything is, here, with AVX where the processor has it, and only PCL itself is not.
-set(ERKPA_STATIC_FLAGS "")
-if(EXISTS /proc/cpuinfo)
-  file(STRINGS /proc/cpuinfo ERKPA_AVX2 REGEX "^flags.* avx2" LIMIT_COUNT 1)
-  if(ERKPA_AVX2)
-    set(ERKPA_STATIC_FLAGS -DCMAKE_CXX_FLAGS=-mavx2)
-  endif()
-endif()
+# A static library has no linker map to protect it: there all code must be built with the same flags as PCL, as is the
+# rule with Eigen.
 erkpa_add_build_test(static_library ${PROJECT_SOURCE_DIR} "${CMAKE_COMMAND};--install;."
   -DBUILD_SHARED_LIBS=OFF -DERKPA_BUILD_TOOLS=OFF -DERKPA_BUILD_SAMPLES=OFF -DERKPA_BUILD_TESTS=OFF
   -DCMAKE_CXX_FLAGS_RELEASE=-O1 -DERKPA_PRECOMPILE_HEADERS=ON
-  -DCMAKE_INSTALL_PREFIX=${ERKPA_STATIC_STAGE} ${ERKPA_STATIC_FLAGS})
+  -DCMAKE_INSTALL_PREFIX=${ERKPA_STATIC_STAGE})
 set_tests_properties(package.static_library PROPERTIES
   FIXTURES_SETUP static_stage PROCESSORS 2 ENVIRONMENT CMAKE_BUILD_PARALLEL_LEVEL=2)
 erkpa_add_build_test(consumer_static ${CMAKE_CURRENT_SOURCE_DIR}/consumer consumer
-  -DCMAKE_PREFIX_PATH=${ERKPA_STATIC_STAGE} ${ERKPA_STATIC_FLAGS})
+  -DCMAKE_PREFIX_PATH=${ERKPA_STATIC_STAGE})
 set_tests_properties(package.consumer_static PROPERTIES FIXTURES_REQUIRED static_stage)
 
 # add_subdirectory and FetchContent; the compiler has seen these sources, so configuring will do.
