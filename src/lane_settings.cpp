@@ -1,0 +1,86 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "lane_settings.h"
+
+#include "support.h"
+#include "support_size.h"
+
+#include <algorithm>
+
+namespace erkpa
+{
+
+namespace
+{
+
+lanes::Basis
+laneBasisOf (Order order)
+{
+  switch (order)
+  {
+    case Order::CONSTANT:
+      return lanes::Basis::CONSTANT;
+    case Order::LINEAR:
+      return lanes::Basis::LINEAR;
+    case Order::QUADRATIC:
+      return lanes::Basis::QUADRATIC;
+    case Order::AUTOMATIC: // settled by the field
+    case Order::SPHERICAL:
+      break;
+  }
+  return lanes::Basis::SPHERICAL;
+}
+
+lanes::Constraint
+laneConstraintOf (Constraint constraint)
+{
+  switch (constraint)
+  {
+    case Constraint::FUNCTIONAL:
+      return lanes::Constraint::FUNCTIONAL;
+    case Constraint::OFFSURFACE:
+      return lanes::Constraint::VALUES;
+    case Constraint::HERMITE:
+      break;
+  }
+  return lanes::Constraint::HERMITE;
+}
+
+} // namespace
+
+std::optional<lanes::Kernel>
+laneKernelOf (const FieldOptions &options)
+{
+  if (options.user_kernel || options.interpolation == Interpolation::SINGULAR)
+    return std::nullopt;
+  switch (options.kernel)
+  {
+    case KernelType::AUTOMATIC:
+      return options.interpolation == Interpolation::COLLOCATION ? lanes::Kernel::WENDLAND_C2 : lanes::Kernel::PAPER;
+    case KernelType::PAPER:
+      return lanes::Kernel::PAPER;
+    case KernelType::WENDLAND_C2:
+      return lanes::Kernel::WENDLAND_C2;
+    case KernelType::WENDLAND_C4:
+      return lanes::Kernel::WENDLAND_C4;
+    case KernelType::GAUSSIAN:
+      return lanes::Kernel::GAUSSIAN;
+    case KernelType::SINGULAR: // weights of 1e12 leave nothing of the others in float
+      break;
+  }
+  return std::nullopt;
+}
+
+lanes::Settings
+laneSettingsOf (const ImplicitField &field)
+{
+  lanes::Settings settings{};
+  settings.basis = laneBasisOf (field.options ().order);
+  settings.constraint = laneConstraintOf (field.options ().constraint);
+  settings.kernel = laneKernelOf (field.options ()).value_or (lanes::Kernel::PAPER);
+  const bool by_nearest = field.supportSize ().kind () == SupportSize::Kind::NEAREST;
+  settings.k = by_nearest ? std::min (field.supportSize ().k (), static_cast<int> (field.points ().size ())) : 0;
+  settings.min_nodes = static_cast<int> (std::min (Support::MIN_NODES, field.points ().size ()));
+  return settings;
+}
+
+} // namespace erkpa

@@ -1,0 +1,21 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "lanes/lanes.h"
+
+#include <erkpa/implicit_field.h>
+
+#include <optional>
+
+namespace erkpa
+{
+
+/** \brief The kernel in lanes; none where it is the caller's own, or asks for doubles. */
+std::optional<lanes::Kernel>
+laneKernelOf (const FieldOptions &options);
+
+/** \brief What the lanes are to know of a field. */
+lanes::Settings
+laneSettingsOf (const ImplicitField &field);
+
+} // namespace erkpa
