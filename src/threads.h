@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include "thread_team.h"
+
 #include <omp.h>
 
 #include <algorithm>
@@ -8,8 +10,6 @@
 #include <cstddef>
 #include <exception>
 #include <mutex>
-#include <system_error>
-#include <thread>
 #include <vector>
 
 namespace erkpa
@@ -24,8 +24,8 @@ threadCount (int threads)
 
 /** \brief Runs share (thread) on several threads, the calling one among them; an exception is thrown again here.
  *
- * Threads of the standard library, not a team of OpenMP: such a team waits for its next work by spinning, which takes
- * the processors from whatever else runs in the pipeline.
+ * Threads of our own, not a team of OpenMP: such a team waits for its next work by spinning, which takes the
+ * processors from whatever else runs in the pipeline.
  */
 template <typename ShareT>
 void
@@ -33,34 +33,19 @@ runThreads (int thread_count, ShareT share)
 {
   std::exception_ptr failure;
   std::mutex failing;
-  const auto run = [&] (int thread)
-  {
-    try
-    {
-      share (thread);
-    }
-    catch (...)
-    {
-      const std::lock_guard<std::mutex> lock (failing);
-      failure = std::current_exception ();
-    }
-  };
-  std::vector<std::thread> others;
-  others.reserve (static_cast<std::size_t> (std::max (0, thread_count - 1)));
-  for (int thread = 1; thread < thread_count; ++thread)
-  {
-    try
-    {
-      others.emplace_back (run, thread);
-    }
-    catch (const std::system_error &) // no more threads to be had: those there are do the work
-    {
-      break;
-    }
-  }
-  run (0);
-  for (std::thread &other : others)
-    other.join ();
+  ThreadTeam::ofThisThread ().run (thread_count,
+                                   [&] (int thread)
+                                   {
+                                     try
+                                     {
+                                       share (thread);
+                                     }
+                                     catch (...)
+                                     {
+                                       const std::lock_guard<std::mutex> lock (failing);
+                                       failure = std::current_exception ();
+                                     }
+                                   });
   if (failure)
     std::rethrow_exception (failure);
 }
