@@ -50,7 +50,7 @@ termsOf (lanes::Basis basis)
 BlockFaces::BlockFaces (const ImplicitField &field, const lanes::Engine &engine, const lanes::Settings &settings,
                         double unit)
     : field_ (field), engine_ (engine), settings_ (settings), unit_ (unit), groups_ (field.faces ()),
-      all_ (field, unit), of_part_ (field, unit), at_part_ (0, termsOf (settings.basis))
+      all_ (field, engine, unit), of_part_ (field, engine, unit), at_part_ (0, termsOf (settings.basis))
 {
 }
 

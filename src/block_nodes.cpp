@@ -7,8 +7,9 @@
 namespace erkpa
 {
 
-BlockNodes::BlockNodes (const ImplicitField &field, double unit)
-    : field_ (field), table_ (field.nodeTable ()), index_ (table_.grid->index ()), inverse_unit_ (1.0 / unit)
+BlockNodes::BlockNodes (const ImplicitField &field, const lanes::Engine &engine, double unit)
+    : field_ (field), table_ (field.nodeTable ()), search_ (*engine.search), index_ (table_.grid->index ()),
+      inverse_unit_ (1.0 / unit)
 {
 }
 
@@ -18,27 +19,23 @@ BlockNodes::find (const Eigen::Vector3d &center, double reach)
   center_ = center;
   const float limit = limitOf (reach);
   const PointGrid &grid = *table_.grid;
-  const float *x = grid.coordinates (0).data (), *y = grid.coordinates (1).data (), *z = grid.coordinates (2).data ();
-  const auto cx = static_cast<float> (center[0]), cy = static_cast<float> (center[1]),
-             cz = static_cast<float> (center[2]);
-  std::size_t kept = 0;
+  stretches_.clear ();
+  std::size_t most = lanes::MAX_WIDTH;
   grid.visitNear (center, std::sqrt (static_cast<double> (limit)),
                   [&] (std::size_t first, std::size_t last)
                   {
-                    if (places_.size () <= kept + (last - first))
-                      places_.resize (2 * (kept + (last - first)) + 1);
-                    if (squared_.size () < places_.size ())
-                      squared_.resize (places_.size ());
-                    for (std::size_t place = first; place < last; ++place)
-                    {
-                      const float dx = x[place] - cx, dy = y[place] - cy, dz = z[place] - cz;
-                      const float squared = dx * dx + dy * dy + dz * dz;
-                      places_[kept] = static_cast<std::uint32_t> (place);
-                      squared_[kept] = squared;
-                      kept += squared <= limit ? 1 : 0;
-                    }
+                    stretches_.push_back ({static_cast<std::uint32_t> (first), static_cast<std::uint32_t> (last)});
+                    most += last - first;
                   });
-  count_ = kept;
+  if (places_.size () < most || squared_.size () < most)
+  {
+    places_.resize (2 * most);
+    squared_.resize (2 * most);
+  }
+  const Eigen::Vector3f middle = center.cast<float> ();
+  const lanes::Cloud cloud{grid.coordinates (0).data (), grid.coordinates (1).data (), grid.coordinates (2).data ()};
+  count_ = search_.findWithin (cloud, stretches_.data (), stretches_.size (), middle.data (), limit,
+                               {places_.data (), squared_.data ()});
 }
 
 float
@@ -52,15 +49,7 @@ BlockNodes::limitOf (double reach) const
 void
 BlockNodes::keepWithin (double reach)
 {
-  const float limit = limitOf (reach);
-  std::size_t kept = 0;
-  for (std::size_t i = 0; i < count_; ++i)
-  {
-    places_[kept] = places_[i];
-    squared_[kept] = squared_[i];
-    kept += squared_[i] <= limit ? 1 : 0;
-  }
-  count_ = kept;
+  count_ = search_.keepWithin ({places_.data (), squared_.data ()}, count_, limitOf (reach));
 }
 
 double
@@ -71,11 +60,7 @@ BlockNodes::boundOfKth (std::size_t k, double guess) const
   const auto has_k = [&] (int step)
   {
     const double distance = distance_at (step);
-    const auto squared = static_cast<float> (distance * distance);
-    int count = 0;
-    for (std::size_t i = 0; i < count_; ++i)
-      count += squared_[i] <= squared ? 1 : 0;
-    return static_cast<std::size_t> (count) >= k;
+    return search_.countWithin (squared_.data (), count_, static_cast<float> (distance * distance)) >= k;
   };
   int high = static_cast<int> (std::floor (std::log2 (guess) * PER_DOUBLING)),
       wide = PER_DOUBLING / 4; // most guesses are good

@@ -24,7 +24,7 @@ class BlockNodes
 {
 public:
   /** \param[in] unit of the lanes' lengths */
-  BlockNodes (const ImplicitField &field, double unit);
+  BlockNodes (const ImplicitField &field, const lanes::Engine &engine, double unit);
 
   /** \brief Find the nodes whose value points may lie within \a reach of \a center, which becomes the origin; floats
    * can say it. */
@@ -121,10 +121,12 @@ private:
 
   const ImplicitField &field_;
   const NodeTable &table_;
+  const lanes::Search &search_;
   const std::vector<std::uint32_t> &index_;
   double inverse_unit_;
   Eigen::Vector3d center_ = Eigen::Vector3d::Zero ();
   std::size_t count_ = 0, value_points_ = 0;
+  std::vector<lanes::Stretch> stretches_;
   std::vector<std::uint32_t> places_; // in the table
   std::vector<float> squared_;        // distances from the center
   std::array<std::vector<float>, 3> positions_, normals_;

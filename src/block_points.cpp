@@ -56,7 +56,7 @@ BlockPoints::run (const lanes::Engine &engine, const lanes::Settings &settings, 
                   const lanes::SharpSurfaces *sharp)
 {
   pad ();
-  list_.resize (std::max (list_.size (), nodes.count + 1));
+  list_.resize (std::max (list_.size (), nodes.count + lanes::MAX_WIDTH));
   rows_.resize (std::max (rows_.size (), lanes::MAX_WIDTH * (nodes.on_surface + 1)));
   const auto growth = [&] (std::size_t a) { return growths ? growths_[a].data () : nullptr; };
   const lanes::Points points{count_,

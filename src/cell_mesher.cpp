@@ -79,7 +79,7 @@ private:
   bool
   mayHaveCrease () const
   {
-    for (std::size_t i = 0; i < size_; ++i)
+    for (std::size_t i = 0; i < (vertices_.has_sides ? size_ : 0); ++i)
     {
       const auto a = static_cast<std::size_t> (ring_[i]), b = static_cast<std::size_t> (ring_[(i + 1) % size_]);
       if (vertices_.side_keys[a] != vertices_.side_keys[b] && mayCrease (vertices_.normals[a], vertices_.normals[b]))

@@ -221,8 +221,8 @@ meshSurface (const ImplicitField &field, const PolygonizerOptions &options, cons
   trimBorder (options.border_offset, options.threads, cell_mesh.border, triangles, vertices);
   projectVertices (field, options, in_cells, 0.1 * voxel, vertices, report);
   const int min_points = std::min (options.min_component_points, static_cast<int> (field.points ().size ()) / 2);
-  report.dropped_components = dropUnsupported (grid, tracker.cellsOfNodes (), min_points, options.threads,
-                                               vertices.positions.size (), triangles);
+  report.dropped_components =
+      dropUnsupported (grid, tracker, min_points, options.threads, vertices.positions.size (), triangles);
   if (triangles.empty ())
     return triangles;
   splitFans (cell_mesh.border, options.threads, triangles, vertices);
@@ -230,7 +230,31 @@ meshSurface (const ImplicitField &field, const PolygonizerOptions &options, cons
   vertices.border_offsets = std::vector<double> (); // has done its work, as have the next two
   vertices.faces = std::vector<int> ();
   vertices.side_keys = std::vector<std::uint64_t> ();
+  vertices.has_sides = false;
   return triangles;
+}
+
+/** \brief Puts triangles where f = iso; the grid is gone when they are there.
+ * \param[out] creases edges of the mesh
+ */
+Outcome
+meshField (const ImplicitField &field, const PolygonizerOptions &options, SurfaceVertices &vertices,
+           std::vector<VertexPair> &creases, std::vector<Triangle> &triangles, PolygonizerReport &report,
+           const ProgressCallback &progress)
+{
+  const double voxel = report.voxel_size;
+  // Off the middle of the cloud by odd shares of a cell: faces of boxes then do not fall on grid nodes.
+  SparseGrid grid (-voxel * Eigen::Vector3d (0.371, 0.437, 0.293), voxel);
+  SurfaceTracker tracker (field, options, grid, report, partOf (progress, 0.0, 0.5));
+  const Outcome outcome = followSurface (tracker, grid, report);
+  if (!outcome.ok ())
+    return outcome;
+  {
+    const StageClock clock (report.seconds_vertices);
+    placeVertices (field, options, grid, vertices, report, partOf (progress, 0.5, 0.5));
+  }
+  triangles = meshSurface (field, options, grid, tracker, vertices, creases, report);
+  return triangles.empty () ? noSurface (field, voxel, report.dropped_components) : Outcome ();
 }
 
 } // namespace
@@ -264,21 +288,12 @@ polygonize (const ImplicitField &field, const PolygonizerOptions &options, Trian
     return {Status::GRID_TOO_FINE,
             "a voxel of " + toText (voxel) + " is too small for the extent of the cloud: use a larger voxel size"};
 
-  // Off the middle of the cloud by odd shares of a cell: faces of boxes then do not fall on grid nodes.
-  SparseGrid grid (-voxel * Eigen::Vector3d (0.371, 0.437, 0.293), voxel);
-  SurfaceTracker tracker (field, options, grid, report, partOf (progress, 0.0, 0.5));
-  outcome = followSurface (tracker, grid, report);
+  SurfaceVertices vertices;
+  std::vector<VertexPair> creases;
+  std::vector<Triangle> triangles;
+  outcome = meshField (field, options, vertices, creases, triangles, report, progress);
   if (!outcome.ok ())
     return outcome;
-  SurfaceVertices vertices;
-  {
-    const StageClock clock (report.seconds_vertices);
-    placeVertices (field, options, grid, vertices, report, partOf (progress, 0.5, 0.5));
-  }
-  std::vector<VertexPair> creases;
-  std::vector<Triangle> triangles = meshSurface (field, options, grid, tracker, vertices, creases, report);
-  if (triangles.empty ())
-    return noSurface (field, voxel, report.dropped_components);
   {
     const StageClock clock (report.seconds_slivers);
     removeSlivers (voxel, creases, triangles, vertices, options.threads);

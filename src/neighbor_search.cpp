@@ -5,6 +5,7 @@
 #include <pcl/point_types.h>
 #include <pcl/search/kdtree.h>
 
+#include <memory>
 #include <mutex>
 #include <utility>
 
@@ -18,7 +19,10 @@ namespace
 class KdTreeSearch : public NeighborSearch
 {
 public:
-  explicit KdTreeSearch (std::vector<Eigen::Vector3f> positions) : positions_ (std::move (positions)), tree_ (false) {}
+  explicit KdTreeSearch (std::shared_ptr<const std::vector<Eigen::Vector3f>> positions)
+      : positions_ (std::move (positions)), tree_ (false)
+  {
+  }
 
   void
   nearestK (const Eigen::Vector3f &x, int k, std::vector<int> &indices,
@@ -46,15 +50,15 @@ private:
   makeTree () const
   {
     const pcl::PointCloud<pcl::PointXYZ>::Ptr cloud (new pcl::PointCloud<pcl::PointXYZ>);
-    cloud->reserve (positions_.size ());
-    for (const Eigen::Vector3f &p : positions_)
+    cloud->reserve (positions_->size ());
+    for (const Eigen::Vector3f &p : *positions_)
       cloud->push_back (pcl::PointXYZ (p.x (), p.y (), p.z ()));
     tree_.setInputCloud (cloud);
-    positions_ = std::vector<Eigen::Vector3f> ();
+    positions_.reset ();
   }
 
   mutable std::once_flag is_made_;
-  mutable std::vector<Eigen::Vector3f> positions_; // until the tree is made
+  mutable std::shared_ptr<const std::vector<Eigen::Vector3f>> positions_; // until the tree is made
   mutable pcl::search::KdTree<pcl::PointXYZ> tree_;
 };
 
@@ -63,7 +67,13 @@ private:
 NeighborSearch::ConstPtr
 makeKdTreeSearch (const std::vector<Eigen::Vector3f> &positions)
 {
-  return std::make_shared<KdTreeSearch> (positions);
+  return makeKdTreeSearch (std::make_shared<const std::vector<Eigen::Vector3f>> (positions));
+}
+
+NeighborSearch::ConstPtr
+makeKdTreeSearch (std::shared_ptr<const std::vector<Eigen::Vector3f>> positions)
+{
+  return std::make_shared<KdTreeSearch> (std::move (positions));
 }
 
 } // namespace erkpa

@@ -18,10 +18,12 @@ namespace
 {
 
 Outcome
-collect (const PointView &view, const SearchFactory &make_search, int threads, OrientedPoints &points,
-         NeighborSearch::ConstPtr &search, PointLayout::ConstPtr &layout, Report &report)
+collect (const PointView &view, const SearchFactory &make_search, int threads,
+         const std::shared_ptr<OrientedPoints> &shared, NeighborSearch::ConstPtr &search, PointLayout::ConstPtr &layout,
+         Report &report)
 {
   const StageClock clock (report.seconds_points);
+  OrientedPoints &points = *shared;
   Outcome outcome = collectPoints (view, points, report.points, threads);
   if (!outcome.ok ())
     return outcome;
@@ -30,7 +32,7 @@ collect (const PointView &view, const SearchFactory &make_search, int threads, O
                                         " distinct, finite points of " + std::to_string (report.points.read) + " read" +
                                         (report.points.no_confidence > 0 ? " that have a positive confidence" : "") +
                                         ": a surface needs at least " + std::to_string (Support::MIN_NODES + 1)};
-  search = make_search ? make_search (points) : makeKdTreeSearch (points.positions);
+  search = make_search ? make_search (points) : makeKdTreeSearch ({shared, &shared->positions});
   layout = std::make_shared<const PointLayout> (points, threads);
   return {};
 }
@@ -178,7 +180,7 @@ buildField (const PointView &view, const Options &options, const SearchFactory &
   const auto points = std::make_shared<OrientedPoints> ();
   NeighborSearch::ConstPtr search;
   PointLayout::ConstPtr layout;
-  outcome = collect (view, make_search, options.polygonizer.threads, *points, search, layout, report);
+  outcome = collect (view, make_search, options.polygonizer.threads, points, search, layout, report);
   if (!outcome.ok ())
     return outcome;
   Options complete = options;

@@ -4,7 +4,6 @@
 #include "cell_loops.h"
 #include "concurrent_sets.h"
 #include "parallel_collect.h"
-#include "surface_tracking.h"
 
 #include <algorithm>
 #include <atomic>
@@ -43,21 +42,25 @@ findPieces (const std::vector<Triangle> &triangles, int threads, ConcurrentSets 
 class SupportCounter
 {
 public:
-  SupportCounter (const SparseGrid &grid, int min_points, const std::vector<int> &pieces, ConcurrentSets &sets)
-      : grid_ (grid), min_points_ (min_points), pieces_ (pieces), sets_ (sets), counts_ (pieces.size ())
+  SupportCounter (const SparseGrid &grid, const SurfaceTracker &tracker, int min_points, const std::vector<int> &pieces,
+                  ConcurrentSets &sets)
+      : grid_ (grid), tracker_ (tracker), min_points_ (min_points), pieces_ (pieces), sets_ (sets),
+        counts_ (pieces.size ())
   {
   }
 
   void
-  count (const std::vector<GridPoint> &cells, int threads)
+  count (int threads)
   {
     // Most surfaces are of few pieces, and a few nodes tell of each that it stays.
-    for (std::size_t first = 0, size = 4096; first < cells.size () && !allStay (); first += size, size *= 4)
-      parallelRanges (std::min (size, cells.size () - first), threads,
+    const std::size_t nodes = tracker_.nodeCount ();
+    for (std::size_t first = 0, size = 4096; first < nodes && !allStay (); first += size, size *= 4)
+      parallelRanges (std::min (size, nodes - first), threads,
                       [&] (std::size_t begin, std::size_t end)
                       {
+                        GridWindow window (grid_);
                         for (std::size_t i = begin; i < end; ++i)
-                          countAt (cells[first + i]);
+                          countAt (first + i, window);
                       });
   }
 
@@ -76,9 +79,10 @@ public:
 
 private:
   void
-  countAt (const GridPoint &cell)
+  countAt (std::size_t node, GridWindow &window)
   {
-    if (cell.x == SurfaceTracker::NO_CELL || !grid_.isActive (cell))
+    GridPoint cell{};
+    if (!tracker_.findCellOfNode (window, node, cell))
       return;
     const CellEdge edge = cellEdge (traceLoops (grid_.cornerValues (cell)).edges[0][0]);
     const int piece = sets_.find (grid_.vertexOnEdge (cell + cornerOffset (edge.corner), edge.axis));
@@ -88,6 +92,7 @@ private:
   }
 
   const SparseGrid &grid_;
+  const SurfaceTracker &tracker_;
   int min_points_;
   const std::vector<int> &pieces_;
   ConcurrentSets &sets_;
@@ -97,7 +102,7 @@ private:
 } // namespace
 
 std::size_t
-dropUnsupported (const SparseGrid &grid, const std::vector<GridPoint> &cells_of_nodes, int min_points, int threads,
+dropUnsupported (const SparseGrid &grid, const SurfaceTracker &tracker, int min_points, int threads,
                  std::size_t vertex_count, std::vector<Triangle> &triangles)
 {
   ConcurrentSets sets (vertex_count, threads);
@@ -111,8 +116,8 @@ dropUnsupported (const SparseGrid &grid, const std::vector<GridPoint> &cells_of_
                     }
                   });
   const std::vector<int> pieces = findPieces (triangles, threads, sets);
-  SupportCounter counter (grid, min_points, pieces, sets);
-  counter.count (cells_of_nodes, threads);
+  SupportCounter counter (grid, tracker, min_points, pieces, sets);
+  counter.count (threads);
   if (counter.allStay ())
     return 0;
   triangles.erase (std::remove_if (triangles.begin (), triangles.end (),

@@ -4,6 +4,7 @@
 #include "block_evaluator.h"
 #include "block_groups.h"
 #include "grid_bits.h"
+#include "parallel_collect.h"
 #include "surface_feet.h"
 #include "threads.h"
 
@@ -78,8 +79,7 @@ SurfaceTracker::followFront ()
       requestCorners (block);
     }
     evaluateRequested ();
-    for (const int block : front_)
-      classify (block);
+    classifyFront ();
   }
 }
 
@@ -128,8 +128,32 @@ SurfaceTracker::evaluateRequested ()
   requested_blocks_.clear ();
 }
 
-/** \brief Marks those fresh cells of a block that the surface crosses, and hands the front on from them. */
+/** \brief Marks the crossed cells of the front and hands it on from them. */
 void
+SurfaceTracker::classifyFront ()
+{
+  std::vector<PassedFaces> passed (front_.size ());
+  constexpr std::size_t STRETCH = 1024;
+  parallelRanges (
+      front_.size (), options_.threads,
+      [&] (std::size_t first, std::size_t last)
+      {
+        for (std::size_t i = first; i < last; ++i)
+          passed[i] = classify (front_[i]);
+      },
+      STRETCH);
+  for (std::size_t i = 0; i < front_.size (); ++i)
+  {
+    const GridBlock &block = grid_.block (front_[i]);
+    active_count_ += static_cast<std::size_t> (__builtin_popcountll (block.active & block.fresh));
+    for (int axis = 0; axis < 3; ++axis)
+      for (const int side : {0, 1})
+        handOn (front_[i], passed[i][static_cast<std::size_t> (2 * axis + side)], axis, side == 1);
+  }
+}
+
+/** \brief Marks those fresh cells of a block that the surface crosses. */
+SurfaceTracker::PassedFaces
 SurfaceTracker::classify (int index)
 {
   std::array<std::uint64_t, 8> inside{}, undefined{}, near{};
@@ -157,7 +181,7 @@ SurfaceTracker::classify (int index)
     all &= corner;
   crossed &= ~all;
   block.active |= crossed;
-  active_count_ += static_cast<std::size_t> (__builtin_popcountll (crossed));
+  PassedFaces passed{};
   for (int axis = 0; axis < 3; ++axis)
     for (const int side : {0, 1})
     {
@@ -168,8 +192,9 @@ SurfaceTracker::classify (int index)
           any |= inside[static_cast<std::size_t> (corner)];
           every &= inside[static_cast<std::size_t> (corner)];
         }
-      handOn (index, crossed & any & ~every, axis, side == 1);
+      passed[static_cast<std::size_t> (2 * axis + side)] = crossed & any & ~every;
     }
+  return passed;
 }
 
 /** \brief The cells beyond a face of some cells go into the next front. */
@@ -189,13 +214,19 @@ SurfaceTracker::handOn (int index, std::uint64_t cells, int axis, bool up)
 void
 SurfaceTracker::listActiveCells ()
 {
-  active_.reserve (active_count_);
-  for (int index = 0; index < grid_.blockCount (); ++index)
-  {
-    const GridBlock &block = grid_.block (index);
-    for (std::uint64_t left = block.active; left != 0; left &= left - 1)
-      active_.push_back (SparseGrid::pointAt (block, __builtin_ctzll (left)));
-  }
+  constexpr std::size_t STRETCH = 2048;
+  active_ = parallelCollect<GridPoint> (
+      static_cast<std::size_t> (grid_.blockCount ()), options_.threads,
+      [this] (std::size_t first, std::size_t last, std::vector<GridPoint> &found)
+      {
+        for (std::size_t index = first; index < last; ++index)
+        {
+          const GridBlock &block = grid_.block (static_cast<int> (index));
+          for (std::uint64_t left = block.active; left != 0; left &= left - 1)
+            found.push_back (SparseGrid::pointAt (block, __builtin_ctzll (left)));
+        }
+      },
+      STRETCH);
 }
 
 void
@@ -246,41 +277,49 @@ SurfaceTracker::findCellNear (GridWindow &window, const GridPoint &cell, GridPoi
   return false;
 }
 
+bool
+SurfaceTracker::findCellOfNode (GridWindow &window, std::size_t node, GridPoint &found) const
+{
+  if (findCellNear (window, grid_.cellOf (field_.surfacePositions ()[node].cast<double> ()), found))
+    return true;
+  const auto before = [] (const std::pair<std::size_t, GridPoint> &foot, std::size_t n) { return foot.first < n; };
+  const auto foot = std::lower_bound (feet_.begin (), feet_.end (), node, before);
+  if (foot == feet_.end () || foot->first != node)
+    return false;
+  found = foot->second;
+  window.moveTo (found);
+  return window.exists () && window.isActive (found);
+}
+
 /** \brief Where noise or smoothing moves the surface off a node, start at the foot of the node on the surface. */
 void
 SurfaceTracker::seedFromProjections ()
 {
   const auto &positions = field_.surfacePositions ();
-  cells_of_nodes_.assign (positions.size (), {NO_CELL, 0, 0});
   // In the order of the grid, as in seedFromNodes ().
   const std::vector<std::uint32_t> &order = field_.nodeTable ().grid->index ();
-  parallelRanges (order.size (), options_.threads,
-                  [&] (std::size_t first, std::size_t last)
-                  {
-                    GridWindow window (grid_);
-                    for (std::size_t i = first; i < last; ++i)
-                    {
-                      const GridPoint cell = grid_.cellOf (positions[order[i]].cast<double> ());
-                      GridPoint found{};
-                      if (findCellNear (window, cell, found))
-                        cells_of_nodes_[order[i]] = found;
-                    }
-                  });
-  std::vector<std::size_t> away;
+  const std::vector<std::uint32_t> away = parallelCollect<std::uint32_t> (
+      order.size (), options_.threads,
+      [&] (std::size_t first, std::size_t last, std::vector<std::uint32_t> &missing)
+      {
+        GridWindow window (grid_);
+        GridPoint found{};
+        for (std::size_t i = first; i < last; ++i)
+          if (!findCellNear (window, grid_.cellOf (positions[order[i]].cast<double> ()), found))
+            missing.push_back (order[i]);
+      });
   std::vector<Eigen::Vector3d> feet;
-  for (const std::uint32_t i : order)
-    if (cells_of_nodes_[i].x == NO_CELL)
-    {
-      away.push_back (i);
-      feet.push_back (positions[i].cast<double> ());
-    }
+  for (const std::uint32_t i : away)
+    feet.push_back (positions[i].cast<double> ());
   const std::vector<char> has_foot = findFeet (field_, options_, grid_.voxelSize (), feet, report_);
   for (std::size_t i = 0; i < away.size (); ++i)
     if (has_foot[i])
     {
-      cells_of_nodes_[away[i]] = grid_.cellOf (feet[i]);
-      addToFront (cells_of_nodes_[away[i]]);
+      feet_.emplace_back (away[i], grid_.cellOf (feet[i]));
+      addToFront (feet_.back ().second);
     }
+  const auto is_before = [] (const auto &a, const auto &b) { return a.first < b.first; };
+  std::sort (feet_.begin (), feet_.end (), is_before);
 }
 
 } // namespace erkpa

@@ -7,7 +7,10 @@
 
 #include <erkpa/marching_cubes.h>
 
+#include <array>
 #include <cstddef>
+#include <cstdint>
+#include <utility>
 #include <vector>
 
 namespace erkpa
@@ -38,14 +41,17 @@ public:
     return active_;
   }
 
-  /** \brief For each node the active cell at which it supports the surface; an x of NO_CELL where there is none. */
-  const std::vector<GridPoint> &
-  cellsOfNodes () const
+  std::size_t
+  nodeCount () const
   {
-    return cells_of_nodes_;
+    return field_.surfacePositions ().size ();
   }
 
-  static constexpr int NO_CELL = 1 << 30;
+  /** \brief Find the active cell at which a node supports the surface; false where there is none.
+   * \param[in,out] window onto the grid
+   */
+  bool
+  findCellOfNode (GridWindow &window, std::size_t node, GridPoint &found) const;
 
 private:
   void
@@ -67,6 +73,13 @@ private:
   evaluateRequested ();
 
   void
+  classifyFront ();
+
+  /** \brief For each face of the cells, down and up along each axis: those fresh cells of a block through which the
+   * surface passes on. */
+  using PassedFaces = std::array<std::uint64_t, 6>;
+
+  PassedFaces
   classify (int block);
 
   void
@@ -93,8 +106,8 @@ private:
   std::vector<GridPoint> active_;
   std::size_t active_count_ = 0;
   std::vector<int> requested_blocks_;
-  std::size_t evaluated_blocks_ = 0; // a block counts once per front that asks for nodes of it
-  std::vector<GridPoint> cells_of_nodes_;
+  std::size_t evaluated_blocks_ = 0;                    // a block counts once per front that asks for nodes of it
+  std::vector<std::pair<std::size_t, GridPoint>> feet_; // of nodes that lie in no active cell: their cells; sorted
 };
 
 } // namespace erkpa

@@ -62,8 +62,11 @@ storeVertex (const LocalField &local, const LocalSample &sample, const Eigen::Ve
   const double slope = sample.gradient.norm ();
   vertices.normals[vertex] = slope > 0.0 ? Eigen::Vector3d (sample.gradient / slope) : Eigen::Vector3d::Zero ();
   vertices.border_offsets[vertex] = sample.border_offset;
-  vertices.faces[vertex] = local.face ();
-  vertices.side_keys[vertex] = local.sideKey ();
+  if (vertices.has_sides)
+  {
+    vertices.faces[vertex] = local.face ();
+    vertices.side_keys[vertex] = local.sideKey ();
+  }
   if (channels > 0)
     local.blendAttributes (&vertices.attributes[vertex * static_cast<std::size_t> (channels)]);
 }
@@ -222,8 +225,11 @@ private:
       vertices_.found[vertex] = position;
     vertices_.normals[vertex] = field.gradient (point).stableNormalized ();
     vertices_.border_offsets[vertex] = field.borderOffset (point);
-    vertices_.faces[vertex] = field.face (point);
-    vertices_.side_keys[vertex] = field.sideKey (point);
+    if (vertices_.has_sides)
+    {
+      vertices_.faces[vertex] = field.face (point);
+      vertices_.side_keys[vertex] = field.sideKey (point);
+    }
     const auto channels = static_cast<std::size_t> (channels_);
     for (std::size_t c = 0; c < channels; ++c)
       vertices_.attributes[vertex * channels + c] = field.attribute (point, c);
@@ -266,6 +272,7 @@ placeVertices (const ImplicitField &field, const PolygonizerOptions &options, Sp
   const int channels = field.points ().channels;
   constexpr double MORE = 0.05; // vertices on creases and borders follow, and shall not move the others
   const auto count = static_cast<std::size_t> (grid.numberVertices ());
+  vertices.has_sides = field.faces () != nullptr || !field.options ().sharp_surfaces.empty ();
   vertices.reserve (count + static_cast<std::size_t> (MORE * static_cast<double> (count)), channels);
   vertices.resize (count, channels);
   if (field.faces () != nullptr)

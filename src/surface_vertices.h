@@ -18,6 +18,7 @@ struct SurfaceVertices
   std::vector<Eigen::Vector3d> positions;
   std::vector<Eigen::Vector3d> normals; ///< unit, ∇f/|∇f|
   std::vector<double> border_offsets;   ///< see LocalSample::border_offset
+  bool has_sides = false;               ///< whether there are sharp surfaces, and the next two are used
   std::vector<int> faces;               ///< face whose piece of f the vertex is on; -1 where there are none
   std::vector<std::uint64_t> side_keys; ///< see LocalField::sideKey ()
   std::vector<float> attributes;        ///< channels values per vertex
@@ -29,8 +30,8 @@ struct SurfaceVertices
     positions.resize (size);
     normals.resize (size);
     border_offsets.resize (size);
-    faces.resize (size, -1);
-    side_keys.resize (size, 0);
+    faces.resize (has_sides ? size : 0, -1);
+    side_keys.resize (has_sides ? size : 0, 0);
     attributes.resize (size * static_cast<std::size_t> (channels));
   }
 
@@ -41,8 +42,8 @@ struct SurfaceVertices
     positions.reserve (size);
     normals.reserve (size);
     border_offsets.reserve (size);
-    faces.reserve (size);
-    side_keys.reserve (size);
+    faces.reserve (has_sides ? size : 0);
+    side_keys.reserve (has_sides ? size : 0);
     attributes.reserve (size * static_cast<std::size_t> (channels));
   }
 
@@ -57,6 +58,8 @@ struct SurfaceVertices
     positions.push_back (position);
     normals.push_back (normal);
     border_offsets.push_back (border_offsets[vertex]);
+    if (!has_sides)
+      return;
     faces.push_back (faces[vertex]);
     side_keys.push_back (side_keys[vertex]);
   }

@@ -89,14 +89,15 @@ parallelFor (std::size_t count, int threads, MakeWorkerT make_worker, WorkT work
   parallelFor (count, threads, make_worker, work, [] (auto &) {});
 }
 
-/** \brief Runs work (first, last) over the stretches of 0 .. count - 1, for items that cost little each. */
+/** \brief Runs work (first, last) over the stretches of 0 .. count - 1, for items that cost little each.
+ * \param[in] stretch items of one
+ */
 template <typename WorkT>
 void
-parallelRanges (std::size_t count, int threads, WorkT work)
+parallelRanges (std::size_t count, int threads, WorkT work, std::size_t stretch = 16384)
 {
-  constexpr std::size_t STRETCH = 16384;
-  parallelFor ((count + STRETCH - 1) / STRETCH, threads, [] { return 0; },
-               [&] (int, std::size_t i) { work (i * STRETCH, std::min (count, (i + 1) * STRETCH)); });
+  parallelFor ((count + stretch - 1) / stretch, threads, [] { return 0; },
+               [&] (int, std::size_t i) { work (i * stretch, std::min (count, (i + 1) * stretch)); });
 }
 
 } // namespace erkpa

@@ -48,4 +48,8 @@ public:
 NeighborSearch::ConstPtr
 makeKdTreeSearch (const std::vector<Eigen::Vector3f> &positions);
 
+/** \brief The same over shared nodes, which are not copied until the search is asked. */
+NeighborSearch::ConstPtr
+makeKdTreeSearch (std::shared_ptr<const std::vector<Eigen::Vector3f>> positions);
+
 } // namespace erkpa

@@ -1,9 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "lanes.h"
-
-#include <xsimd/xsimd.hpp>
+#include "lane_search.h"
 
 namespace erkpa::lanes
 {
@@ -117,14 +115,8 @@ private:
       const B dx = B::load_unaligned (nodes_.x + first) - B (middle[0]);
       const B dy = B::load_unaligned (nodes_.y + first) - B (middle[1]);
       const B dz = B::load_unaligned (nodes_.z + first) - B (middle[2]);
-      float margins[WIDTH];
-      (limit - xsimd::fma (dz, dz, xsimd::fma (dy, dy, dx * dx))).store_unaligned (margins);
-      const std::size_t last = nodes_.on_surface - first < WIDTH ? nodes_.on_surface - first : WIDTH;
-      for (std::size_t i = 0; i < last; ++i)
-      {
-        list_[listed_] = static_cast<std::uint32_t> (first + i);
-        listed_ += margins[i] >= 0.0f ? 1 : 0;
-      }
+      const B margin = limit - xsimd::fma (dz, dz, xsimd::fma (dy, dy, dx * dx));
+      listed_ += appendWhere (margin, first, nodes_.on_surface - first, list_ + listed_);
     }
     for (std::size_t i = 0; i < listed_; ++i)
     {

@@ -14,6 +14,7 @@ evaluateAvx2 (const Settings &settings, const Nodes &nodes, const Points &points
 void
 evaluateAvx512 (const Settings &settings, const Nodes &nodes, const Points &points, const SharpSurfaces &sharp,
                 const Scratch &scratch, const Samples &samples);
+extern const Search SEARCH_BASELINE, SEARCH_AVX2, SEARCH_AVX512;
 
 namespace
 {
@@ -25,10 +26,11 @@ struct Available
 
   Available ()
   {
-    static constexpr Engine BASELINE{"baseline", 4, evaluateBaseline};
+    static constexpr Engine BASELINE{"baseline", 4, &SEARCH_BASELINE, evaluateBaseline};
     engines[count++] = &BASELINE;
 #ifdef ERKPA_X86_LANES
-    static constexpr Engine AVX2{"AVX2", 8, evaluateAvx2}, AVX512{"AVX-512", 16, evaluateAvx512};
+    static constexpr Engine AVX2{"AVX2", 8, &SEARCH_AVX2, evaluateAvx2};
+    static constexpr Engine AVX512{"AVX-512", 16, &SEARCH_AVX512, evaluateAvx512};
     if (__builtin_cpu_supports ("avx2") != 0 && __builtin_cpu_supports ("fma") != 0)
       engines[count++] = &AVX2;
     if (__builtin_cpu_supports ("avx512f") != 0)

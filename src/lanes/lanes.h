@@ -139,11 +139,47 @@ struct Samples
   float *attributes; ///< channel after channel
 };
 
-/** \brief Memory for one call: as many places as there are nodes, and rows of MAX_WIDTH floats for distances. */
+/** \brief Memory for one call: MAX_WIDTH more places than there are nodes, and rows of MAX_WIDTH floats for distances. */
 struct Scratch
 {
   std::uint32_t *list;
   float *rows; ///< MAX_WIDTH · (count + 1)
+};
+
+/** \brief Points among which is searched. */
+struct Cloud
+{
+  const float *x, *y, *z;
+};
+
+/** \brief The points from one place on to before another. */
+struct Stretch
+{
+  std::uint32_t first, last;
+};
+
+/** \brief Places of points, and their squared distances from a center. */
+struct Found
+{
+  std::uint32_t *places;
+  float *squared;
+};
+
+/** \brief A search, for the neighbourhood that evaluation points share. */
+struct Search
+{
+  /** \brief Finds those points of stretches whose squared distance from a center is at most a limit.
+   * \param[out] found has room for all points of the stretches and MAX_WIDTH more
+   * \return how many, in their order
+   */
+  std::size_t (*findWithin) (const Cloud &cloud, const Stretch *stretches, std::size_t count, const float *center,
+                             float limit, const Found &found);
+
+  /** \brief Drops those beyond a lower limit; returns how many are left. */
+  std::size_t (*keepWithin) (const Found &found, std::size_t count, float limit);
+
+  /** \brief How many are within a limit. */
+  std::size_t (*countWithin) (const float *squared, std::size_t count, float limit);
 };
 
 /** \brief One instruction set. */
@@ -151,6 +187,7 @@ struct Engine
 {
   const char *name;
   std::size_t width; ///< points per vector
+  const Search *search;
   void (*evaluate) (const Settings &settings, const Nodes &nodes, const Points &points, const SharpSurfaces &sharp,
                     const Scratch &scratch, const Samples &samples);
 };

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "lane_engine.h"
+#include "lane_search.h"
 
 namespace erkpa::lanes
 {
@@ -10,5 +11,8 @@ evaluateAvx2 (const Settings &settings, const Nodes &nodes, const Points &points
 {
   evaluate<xsimd::fma3<xsimd::avx2>> (settings, nodes, points, sharp, scratch, samples);
 }
+
+extern const Search SEARCH_AVX2;
+constexpr Search SEARCH_AVX2 = makeSearch<xsimd::fma3<xsimd::avx2>> ();
 
 } // namespace erkpa::lanes
