@@ -12,6 +12,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <numeric>
 #include <set>
 #include <tuple>
 #include <utility>
@@ -35,31 +36,76 @@ struct Growth
   }
 };
 
-/** \brief All links once: the turn between the normals, by its chord, and a little for the way. */
-std::vector<Growth>
-listGrowths (const OrientedPoints &points, const SegmentationOptions &options, const NodeLinks &links, int threads)
+/** \brief The growths from a stretch of nodes, in bands of rising cost. */
+struct Growths
 {
-  constexpr double PER_SPACING = 0.05; // radians that weigh as much as a spacing
-  constexpr std::size_t STRETCH = 512;
-  const auto list = [&] (std::size_t first, std::size_t last, std::vector<Growth> &growths)
+  static constexpr std::size_t BANDS = 32;
+
+  std::vector<Growth> growths;
+  std::array<std::size_t, BANDS + 1> firsts{}; ///< of each band
+};
+
+/** \brief Lists the links once: the turn between the normals, by its chord, and a little for the way. */
+class GrowthLister
+{
+public:
+  GrowthLister (const OrientedPoints &points, const SegmentationOptions &options, const NodeLinks &links)
+      : points_ (points), links_ (links), spacing_ (options.spacing),
+        per_cost_ (Growths::BANDS / (options.angle + PER_SPACING * options.bridge_reach))
   {
-    std::size_t count = 0;
-    for (std::size_t i = first; i < last; ++i)
-      count += links[i].size ();
-    growths.reserve (count);
-    for (std::size_t i = first; i < last; ++i)
-      for (const int j : links[i])
-      {
-        const int node = static_cast<int> (i);
-        if (j < node)
-          continue;
-        const double turn = (normalOf (points, node) - normalOf (points, j)).norm ();
-        const double way = (positionOf (points, j) - positionOf (points, node)).norm () / options.spacing;
-        growths.push_back ({static_cast<float> (turn + PER_SPACING * way), node, j});
-      }
-  };
-  return parallelCollect<Growth> (points.size (), threads, list, STRETCH);
-}
+  }
+
+  std::vector<Growths>
+  list (int threads) const
+  {
+    constexpr std::size_t STRETCH = 512;
+    std::vector<Growths> parts ((points_.size () + STRETCH - 1) / STRETCH);
+    parallelFor (
+        parts.size (), threads, [] { return std::vector<Growth> (); },
+        [&] (std::vector<Growth> &growths, std::size_t i)
+        {
+          growths.clear ();
+          for (std::size_t node = i * STRETCH; node < std::min (points_.size (), (i + 1) * STRETCH); ++node)
+            append (static_cast<int> (node), growths);
+          sortIntoBands (growths, parts[i]);
+        });
+    return parts;
+  }
+
+private:
+  static constexpr double PER_SPACING = 0.05; // radians that weigh as much as a spacing
+
+  void
+  append (int node, std::vector<Growth> &growths) const
+  {
+    for (const int j : links_[static_cast<std::size_t> (node)])
+    {
+      if (j < node)
+        continue;
+      const double turn = (normalOf (points_, node) - normalOf (points_, j)).norm ();
+      const double way = (positionOf (points_, j) - positionOf (points_, node)).norm () / spacing_;
+      growths.push_back ({static_cast<float> (turn + PER_SPACING * way), node, j});
+    }
+  }
+
+  void
+  sortIntoBands (const std::vector<Growth> &growths, Growths &sorted) const
+  {
+    const auto band_of = [this] (const Growth &growth)
+    { return std::min (Growths::BANDS - 1, static_cast<std::size_t> (growth.cost * per_cost_)); };
+    for (const Growth &growth : growths)
+      ++sorted.firsts[band_of (growth) + 1];
+    std::partial_sum (sorted.firsts.begin (), sorted.firsts.end (), sorted.firsts.begin ());
+    auto places = sorted.firsts;
+    sorted.growths.resize (growths.size ());
+    for (const Growth &growth : growths)
+      sorted.growths[places[band_of (growth)]++] = growth;
+  }
+
+  const OrientedPoints &points_;
+  const NodeLinks &links_;
+  double spacing_, per_cost_;
+};
 
 /** \brief Grows faces along the links, the smoothest first, without ever joining nodes that are apart. */
 class FaceGrower
@@ -76,30 +122,18 @@ public:
    * order (Filter-Kruskal, Osipov, Sanders, Singler 2009).
    */
   DisjointSets &
-  grow (const std::vector<Growth> &growths)
+  grow (const std::vector<Growths> &parts)
   {
-    constexpr std::size_t BANDS = 32;
-    float most = 1e-12f;
-    for (const Growth &growth : growths)
-      most = std::max (most, growth.cost);
-    const auto band_of = [most] (const Growth &growth)
-    { return std::min (BANDS - 1, static_cast<std::size_t> (growth.cost / most * BANDS)); };
-    std::array<std::size_t, BANDS> sizes{};
-    for (const Growth &growth : growths)
-      ++sizes[band_of (growth)];
-    std::array<std::vector<Growth>, BANDS> bands;
-    for (std::size_t b = 0; b < BANDS; ++b)
-      bands[b].reserve (sizes[b]);
-    for (const Growth &growth : growths)
-      bands[band_of (growth)].push_back (growth);
-    for (std::vector<Growth> &band : bands)
+    std::vector<Growth> open;
+    for (std::size_t band = 0; band < Growths::BANDS; ++band)
     {
-      band.erase (std::remove_if (band.begin (), band.end (),
-                                  [this] (const Growth &growth)
-                                  { return sets_.find (growth.from) == sets_.find (growth.to); }),
-                  band.end ());
-      std::sort (band.begin (), band.end ());
-      for (const Growth &growth : band)
+      open.clear ();
+      for (const Growths &part : parts)
+        for (std::size_t i = part.firsts[band]; i < part.firsts[band + 1]; ++i)
+          if (sets_.find (part.growths[i].from) != sets_.find (part.growths[i].to))
+            open.push_back (part.growths[i]);
+      std::sort (open.begin (), open.end ());
+      for (const Growth &growth : open)
         grow (growth);
     }
     return sets_;
@@ -176,7 +210,7 @@ segmentFaces (const OrientedPoints &points, const NeighborSearch &search, const 
   const NodeLinks links = linkNeighbors (points, search, options, threads, is_suspect);
   const NodeLists apart = findNodesApart (points, search, options, links, is_suspect, threads);
   FaceGrower grower (points.size (), apart);
-  DisjointSets &sets = grower.grow (listGrowths (points, options, links, threads));
+  DisjointSets &sets = grower.grow (GrowthLister (points, options, links).list (threads));
 
   FaceSegmentation result;
   const auto n = static_cast<int> (points.size ());

@@ -4,8 +4,10 @@
 #include "threads.h"
 
 #include <algorithm>
+#include <array>
 #include <cstddef>
 #include <cstdint>
+#include <utility>
 #include <vector>
 
 namespace erkpa
@@ -44,17 +46,34 @@ public:
   void
   fill (std::size_t count, int threads, MakeWorkerT make_worker, AppendT append)
   {
-    ends_.resize (count);
+    ends_.assign (count, 0);
     parts_.assign ((count + STRETCH - 1) / STRETCH, {});
-    parallelFor (parts_.size (), threads, make_worker,
-                 [&] (auto &worker, std::size_t part)
-                 {
-                   for (std::size_t i = part * STRETCH; i < std::min (count, (part + 1) * STRETCH); ++i)
-                   {
-                     append (worker, i, parts_[part]);
-                     ends_[i] = static_cast<std::uint32_t> (parts_[part].size ());
-                   }
-                 });
+    refill (threads, make_worker,
+            [&] (auto &worker, std::size_t i, const List &, std::vector<int> &list) { append (worker, i, list); });
+  }
+
+  /** \brief Replaces the lists by what append (worker, node, list so far, list) appends. */
+  template <typename MakeWorkerT, typename AppendT>
+  void
+  refill (int threads, MakeWorkerT make_worker, AppendT append)
+  {
+    using Worker = decltype (make_worker ());
+    parallelFor (
+        parts_.size (), threads, [&] { return std::pair<Worker, std::vector<int>> (make_worker (), {}); },
+        [&] (auto &worker, std::size_t part)
+        {
+          std::vector<int> &lists = worker.second;
+          lists.clear ();
+          std::array<std::uint32_t, STRETCH> ends{};
+          const std::size_t first = part * STRETCH, last = std::min (size (), first + STRETCH);
+          for (std::size_t i = first; i < last; ++i)
+          {
+            append (worker.first, i, (*this)[i], lists);
+            ends[i - first] = static_cast<std::uint32_t> (lists.size ());
+          }
+          std::copy_n (ends.begin (), last - first, ends_.begin () + static_cast<std::ptrdiff_t> (first));
+          parts_[part] = lists; // just as much memory as it takes
+        });
   }
 
   List

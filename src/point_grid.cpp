@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "point_grid.h"
 
+#include "lanes/lanes.h"
 #include "threads.h"
 
 #include <algorithm>
@@ -169,29 +170,27 @@ PointGrid::withinRadius (const Eigen::Vector3d &x, double radius, std::vector<in
 {
   const Eigen::Vector3f center = x.cast<float> ();
   const auto limit = static_cast<float> (radius * radius);
-  const float *px = coordinates_[0].data (), *py = coordinates_[1].data (), *pz = coordinates_[2].data ();
-  const float cx = center[0], cy = center[1], cz = center[2];
+  const lanes::Search &search = *lanes::bestEngine ().search;
+  const lanes::Cloud cloud{coordinates_[0].data (), coordinates_[1].data (), coordinates_[2].data ()};
   std::size_t kept = 0;
   visitNear (x, radius,
              [&] (std::size_t first, std::size_t last)
              {
-               const std::size_t most = kept + (last - first);
+               const std::size_t most = kept + (last - first) + lanes::MAX_WIDTH;
                if (indices.size () < most || squared_distances.size () < most)
                {
                  indices.resize (2 * most);
                  squared_distances.resize (2 * most);
                }
-               for (std::size_t place = first; place < last; ++place)
-               {
-                 const float dx = px[place] - cx, dy = py[place] - cy, dz = pz[place] - cz;
-                 const float squared = dx * dx + dy * dy + dz * dz;
-                 indices[kept] = static_cast<int> (index_[place]);
-                 squared_distances[kept] = squared;
-                 kept += squared <= limit ? 1 : 0; // no branch, which none could foretell
-               }
+               const lanes::Stretch stretch{static_cast<std::uint32_t> (first), static_cast<std::uint32_t> (last)};
+               auto *const places = reinterpret_cast<std::uint32_t *> (indices.data ()); // of the same layout
+               kept += search.findWithin (cloud, &stretch, 1, center.data (), limit,
+                                          {places + kept, squared_distances.data () + kept});
              });
   indices.resize (kept);
   squared_distances.resize (kept);
+  for (int &place : indices)
+    place = static_cast<int> (index_[static_cast<std::size_t> (place)]);
 }
 
 void

@@ -27,23 +27,22 @@ public:
   link (std::vector<char> &is_suspect) const
   {
     is_suspect.assign (points_.size (), 0);
-    NodeLinks near;
-    near.fill (
-        points_.size (), threads_, [] { return Found (); },
-        [&] (Found &found, std::size_t i, std::vector<int> &links)
-        { is_suspect[i] = linkWithin (near_, i, found, links) ? 1 : 0; });
-    if (!(far_ > near_))
-      return near;
-    const std::vector<char> is_wanted = markFar (is_suspect, near);
     NodeLinks links;
     links.fill (
         points_.size (), threads_, [] { return Found (); },
         [&] (Found &found, std::size_t i, std::vector<int> &of_node)
+        { is_suspect[i] = linkWithin (near_, i, found, of_node) ? 1 : 0; });
+    if (!(far_ > near_))
+      return links;
+    const std::vector<char> is_wanted = markFar (is_suspect, links);
+    links.refill (
+        threads_, [] { return Found (); },
+        [&] (Found &found, std::size_t i, const NodeLinks::List &near, std::vector<int> &of_node)
         {
           if (is_wanted[i])
             linkWithin (far_, i, found, of_node);
           else
-            of_node.insert (of_node.end (), near[i].begin (), near[i].end ());
+            of_node.insert (of_node.end (), near.begin (), near.end ());
         });
     return links;
   }

@@ -158,13 +158,23 @@ private:
     return B::load_unaligned (rows_ + WIDTH * i);
   }
 
+  /** \brief How many of the rows are at most \a squared.
+   *
+   * In four sums, since one would wait for itself.
+   */
   B
   countWithin (B squared) const
   {
-    B count (0.0f);
-    for (std::size_t i = 0; i < listed_; ++i)
-      count += xsimd::select (row (i) <= squared, B (1.0f), B (0.0f));
-    return count;
+    const B one (1.0f);
+    B counts[4] = {B (0.0f), B (0.0f), B (0.0f), B (0.0f)};
+    const auto add = [&] (std::size_t i, B &count) { count = xsimd::select (row (i) <= squared, count + one, count); };
+    std::size_t i = 0;
+    for (; i + 4 <= listed_; i += 4)
+      for (std::size_t j = 0; j < 4; ++j)
+        add (i + j, counts[j]);
+    for (; i < listed_; ++i)
+      add (i, counts[0]);
+    return (counts[0] + counts[1]) + (counts[2] + counts[3]);
   }
 
   /** \brief ε = distance to the k-th node, from a bound of it and a guess.
@@ -210,10 +220,18 @@ private:
   B
   largestWithin (B bound) const
   {
-    B largest (0.0f);
-    for (std::size_t i = 0; i < listed_; ++i)
-      largest = xsimd::max (largest, xsimd::select (row (i) <= bound, row (i), B (0.0f)));
-    return largest;
+    B largest (0.0f), others (0.0f);
+    const auto take = [&] (std::size_t i, B &most)
+    { most = xsimd::select (row (i) <= bound, xsimd::max (most, row (i)), most); };
+    std::size_t i = 0;
+    for (; i + 2 <= listed_; i += 2)
+    {
+      take (i, largest);
+      take (i + 1, others);
+    }
+    if (i < listed_)
+      take (i, largest);
+    return xsimd::max (largest, others);
   }
 
   template <typename MaskT>
