@@ -3,6 +3,7 @@
 
 #include "plane_meeting.h"
 
+#include <algorithm>
 #include <cmath>
 
 namespace erkpa
@@ -18,7 +19,7 @@ moveToCrease (LocalField &local, const std::vector<Side> &sides, double iso, dou
   if (gradients_there != nullptr)
     gradients_there->resize (sides.size ());
   std::vector<LocalSample> samples;
-  double squares = 0.0; // of the values
+  double squares = 0.0, before = HUGE_VAL; // of the values; the last step
   for (int step = 0; step < STEPS; ++step)
   {
     PlaneMeeting meeting;
@@ -38,8 +39,10 @@ moveToCrease (LocalField &local, const std::vector<Side> &sides, double iso, dou
     if (!((x + move - start).norm () < reach))
       return false;
     x += move;
-    if (move.norm () < tolerance)
+    const double length = move.norm ();
+    if (length * std::min (1.0, length / before) < tolerance) // the next step is shorter still
       return true;
+    before = length;
   }
   return std::sqrt (squares) < 1e3 * tolerance;
 }

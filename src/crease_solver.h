@@ -13,7 +13,7 @@ namespace erkpa
  *
  * Newton steps of least norm, so that pieces that say the same do no harm.
  * \param[in] reach how far the point may move, a length
- * \param[in] tolerance steps shorter than this end it, a length
+ * \param[in] tolerance it ends when steps get shorter than this, a length
  * \param[in,out] x the point; anywhere within reach where it fails
  * \param[out] gradients of the pieces there, all but for the last short step; null: not wanted
  * \return false where there is no such place within reach

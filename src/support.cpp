@@ -129,6 +129,34 @@ Support::makeValuePoints ()
   }
 }
 
+template <typename ChooseT>
+void
+Support::listSlots (ChooseT choose, std::vector<int> &slots) const
+{
+  slots.resize (squared_.size ());
+  std::size_t kept = 0;
+  for (std::size_t i = 0; i < squared_.size (); ++i)
+  {
+    slots[kept] = static_cast<int> (i);
+    kept += choose (i) ? 1 : 0; // no branch, which none could foretell
+  }
+  slots.resize (kept);
+}
+
+template <typename ChooseT>
+void
+Support::listDistances (ChooseT choose)
+{
+  scratch_.resize (squared_.size ());
+  std::size_t kept = 0;
+  for (std::size_t i = 0; i < squared_.size (); ++i)
+  {
+    scratch_[kept] = squared_[i];
+    kept += both (choose (i), isOnSurface (i)) ? 1 : 0;
+  }
+  scratch_.resize (kept);
+}
+
 void
 Support::measureDistances (const Eigen::Vector3d &x)
 {
@@ -160,10 +188,7 @@ Support::measureNearestRadius (const Eigen::Vector3d &x)
 {
   // ε is 1-Lipschitz: only candidates within the centre's radius and the way to x can be among the k nearest.
   const double bound = (center_radius_ + (x - center_).norm ()) + ROUNDING * (center_radius_ + x.norm ());
-  scratch_.clear ();
-  for (std::size_t i = 0; i < squared_.size (); ++i)
-    if (squared_[i] <= bound * bound && isOnSurface (i))
-      scratch_.push_back (squared_[i]);
+  listDistances ([&] (std::size_t i) { return squared_[i] <= bound * bound; });
   const std::size_t k = std::min (static_cast<std::size_t> (size_.k ()), scratch_.size ());
   if (k == 0)
     return;
@@ -180,10 +205,7 @@ void
 Support::measurePartRadius (const Eigen::Vector3d &x)
 {
   const double limit = PART_REACH * whole_radius_;
-  scratch_.clear ();
-  for (std::size_t i = 0; i < squared_.size (); ++i)
-    if (squared_[i] < limit * limit && isOnSurface (i) && isMember (i))
-      scratch_.push_back (squared_[i]);
+  listDistances ([&] (std::size_t i) { return both (squared_[i] < limit * limit, isMember (i)); });
   const auto k = static_cast<std::size_t> (neighborsOfPart (size_.k ()));
   radius_ = limit;
   radius_gradient_ = PART_REACH * whole_radius_gradient_;
@@ -207,10 +229,7 @@ Support::neighborsOfPart (int k)
 void
 Support::listWithin (double reach, std::vector<int> &slots) const
 {
-  slots.clear ();
-  for (std::size_t i = 0; i < squared_.size (); ++i)
-    if (squared_[i] <= reach * reach)
-      slots.push_back (static_cast<int> (i));
+  listSlots ([&] (std::size_t i) { return squared_[i] <= reach * reach; }, slots);
 }
 
 double
@@ -307,15 +326,15 @@ Support::weighNodes (const Eigen::Vector3d &x)
   if (!(radius_ > 0.0) || !std::isfinite (limit))
     return false;
   const double scale = 1.0 / radius_;
-  for (std::size_t i = 0; i < squared_.size (); ++i)
+  listSlots ([&] (std::size_t i) { return both (squared_[i] < limit, isMember (i)); }, slots_);
+  for (const int slot : slots_)
   {
-    if (squared_[i] >= limit || !isMember (i))
-      continue;
+    const auto i = static_cast<std::size_t> (slot);
     const Eigen::Vector3d u = Eigen::Vector3d (px_[i] - x[0], py_[i] - x[1], pz_[i] - x[2]) * scale;
     const double t = std::sqrt (has_shapes_ ? u.dot (stretched (points_[i].node, u)) : squared_[i] * scale * scale);
     const double weight = t < 1.0 ? weightOf (i, t) : 0.0;
     if (weight > 0.0)
-      nodes_.push_back ({static_cast<int> (i), u, t, weight, 1.0});
+      nodes_.push_back ({slot, u, t, weight, 1.0});
   }
   return nodes_.size () >= std::min (MIN_NODES, field_.points ().size ());
 }

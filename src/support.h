@@ -170,6 +170,23 @@ private:
   void
   makeValuePoints ();
 
+  /** \brief The slots that a predicate chooses. */
+  template <typename ChooseT>
+  void
+  listSlots (ChooseT choose, std::vector<int> &slots) const;
+
+  /** \brief Into scratch_ go the squared distances of those nodes whose slots a predicate chooses. */
+  template <typename ChooseT>
+  void
+  listDistances (ChooseT choose);
+
+  /** \brief Both, without a branch. */
+  static bool
+  both (bool a, bool b)
+  {
+    return (static_cast<int> (a) & static_cast<int> (b)) != 0;
+  }
+
   void
   measureDistances (const Eigen::Vector3d &x);
 
@@ -220,6 +237,7 @@ private:
   std::vector<double> squared_;      // squared distances from x
   mutable std::vector<double> scratch_;
   std::vector<float> found_;
+  std::vector<int> slots_; // of those that are weighed
   std::vector<SupportNode> nodes_;
   const std::vector<int> *parts_ = nullptr; // null: all
   int part_ = 0;
