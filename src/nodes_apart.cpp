@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "nodes_apart.h"
 
+#include "concurrent_sets.h"
 #include "threads.h"
 
 #include <algorithm>
@@ -17,9 +18,9 @@ class LocalGroups
 {
 public:
   LocalGroups (const OrientedPoints &points, const NeighborSearch &search, const SegmentationOptions &options,
-               const NodeLinks &links)
+               const NodeLinks &links, const std::vector<int> &wholes)
       : points_ (points), search_ (search), options_ (options), test_ (points, options), links_ (links),
-        groups_ (points.size (), OUTSIDE)
+        wholes_ (wholes), groups_ (points.size (), OUTSIDE)
   {
   }
 
@@ -44,6 +45,12 @@ public:
 
 private:
   static constexpr int UNKNOWN = -1, STRANGER = -2, OUTSIDE = 0; // groups; others count from 1, the node's own
+
+  int
+  wholeOf (int node) const
+  {
+    return wholes_[static_cast<std::size_t> (node)];
+  }
 
   int &
   group (int node)
@@ -73,11 +80,13 @@ private:
     auto unknown = strangers_.size ();
     for (const int stranger : strangers_)
       group (stranger) = STRANGER;
+    const auto is_elsewhere = [&] (int node) { return wholeOf (node) != wholeOf (own); };
+    const bool are_elsewhere = std::all_of (strangers_.begin (), strangers_.end (), is_elsewhere);
     const auto has_found_all = [&] (int, bool is_stranger) { return (unknown -= is_stranger ? 1 : 0) == 0; };
-    const int size = follow (own, 1, has_found_all);
+    const auto is_large = [&] (int count, bool) { return count >= options_.smallest; };
+    const int size = are_elsewhere ? follow (own, 1, is_large) : follow (own, 1, has_found_all);
     if (unknown == 0 || size < options_.smallest)
       return others;
-    const auto is_large = [&] (int count, bool) { return count >= options_.smallest; };
     std::vector<char> counts{0, 1}; // per group whether it is large enough
     for (const int stranger : strangers_)
     {
@@ -145,12 +154,35 @@ private:
   const SegmentationOptions &options_;
   const SmoothnessTest test_;
   const NodeLinks &links_;
-  std::vector<int> groups_; // of all nodes
+  const std::vector<int> &wholes_; // what all links together join, per node
+  std::vector<int> groups_;        // of all nodes
   std::vector<int> ball_;
   std::vector<float> squared_;
   std::vector<int> strangers_, front_, linked_;
   bool meets_other_ = false; // whether the group last followed is part of one that was left before
 };
+
+/** \brief What the links join, in the whole cloud: a number for each node. */
+std::vector<int>
+findWholes (const NodeLinks &links, int threads)
+{
+  ConcurrentSets sets (links.size (), threads);
+  std::vector<int> wholes (links.size ());
+  parallelRanges (links.size (), threads,
+                  [&] (std::size_t first, std::size_t last)
+                  {
+                    for (std::size_t i = first; i < last; ++i)
+                      for (const int j : links[i])
+                        sets.unite (static_cast<int> (i), j);
+                  });
+  parallelRanges (links.size (), threads,
+                  [&] (std::size_t first, std::size_t last)
+                  {
+                    for (std::size_t i = first; i < last; ++i)
+                      wholes[i] = sets.find (static_cast<int> (i));
+                  });
+  return wholes;
+}
 
 } // namespace
 
@@ -158,9 +190,10 @@ NodeLists
 findNodesApart (const OrientedPoints &points, const NeighborSearch &search, const SegmentationOptions &options,
                 const NodeLinks &links, const std::vector<char> &is_suspect, int threads)
 {
+  const std::vector<int> wholes = findWholes (links, threads);
   NodeLists seen (points.size ()), apart (points.size ());
   parallelFor (
-      points.size (), threads, [&] { return LocalGroups (points, search, options, links); },
+      points.size (), threads, [&] { return LocalGroups (points, search, options, links, wholes); },
       [&] (LocalGroups &groups, std::size_t i)
       {
         if (is_suspect[i])
