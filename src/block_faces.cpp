@@ -78,7 +78,6 @@ BlockFaces::gatherNodes (double radius)
   all_.find (center_, Support::PART_REACH * (radius + extent_) + extent_);
   all_.copy ();
   groups_.assign (all_.count (), [this] (std::size_t i) { return all_.node (i); });
-  squared_.resize (all_.count ());
   has_nodes_ = true;
 }
 
@@ -107,22 +106,13 @@ BlockFaces::combine (const lanes::Settings &settings, double radius, const std::
 void
 BlockFaces::listNear (const Eigen::Vector3f &x, float radius)
 {
-  const float *px = all_.coordinates (0), *py = all_.coordinates (1), *pz = all_.coordinates (2);
-  const std::size_t count = all_.count ();
-  for (std::size_t i = 0; i < count; ++i)
-  {
-    const float dx = px[i] - x[0], dy = py[i] - x[1], dz = pz[i] - x[2];
-    squared_[i] = dx * dx + dy * dy + dz * dz;
-  }
-  const auto reach = static_cast<float> (FaceGroups::REACH) * radius, limit = reach * reach;
-  near_.resize (count);
-  std::size_t kept = 0;
-  for (std::size_t i = 0; i < count; ++i)
-  {
-    near_[kept] = static_cast<int> (i);
-    kept += squared_[i] <= limit ? 1 : 0;
-  }
-  near_.resize (kept);
+  const auto reach = static_cast<float> (FaceGroups::REACH) * radius;
+  const lanes::Cloud cloud{all_.coordinates (0), all_.coordinates (1), all_.coordinates (2)};
+  const lanes::Stretch all{0, static_cast<std::uint32_t> (all_.count ())};
+  near_.resize (all_.count () + lanes::MAX_WIDTH);
+  squared_.resize (near_.size ());
+  near_.resize (engine_.search->findWithin (cloud, &all, 1, x.data (), reach * reach,
+                                            {reinterpret_cast<std::uint32_t *> (near_.data ()), squared_.data ()}));
 }
 
 /** \brief List the groups that a point sees, and the nodes that will vote. */
@@ -147,12 +137,12 @@ BlockFaces::askForParts (const BlockPoints &points, std::uint32_t point, Combine
     part.state = lanes::State::UNDEFINED;
     parts_.push_back (part);
   }
-  for (const int node : near_)
+  for (std::size_t n = 0; n < near_.size (); ++n)
   {
+    const int node = near_[n], group = groups_.groupOfSlot (node);
     const auto i = static_cast<std::size_t> (node);
-    const int group = groups_.groupOfSlot (node);
     const double weight =
-        1.0 - std::sqrt (static_cast<double> (squared_[i])) / (FaceGroups::REACH * static_cast<double> (radius));
+        1.0 - std::sqrt (static_cast<double> (squared_[n])) / (FaceGroups::REACH * static_cast<double> (radius));
     if (group < 0 || group >= combined.groups || !(weight > 0.0))
       continue;
     const Eigen::Vector3f way (all_.coordinates (0)[i] - x[0], all_.coordinates (1)[i] - x[1],

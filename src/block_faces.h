@@ -155,7 +155,7 @@ private:
   std::vector<Part> parts_;
   std::vector<std::uint32_t> parts_to_fit_; // those of one group
   std::vector<int> near_;                   // nodes around a point
-  std::vector<float> squared_;              // distances from a point
+  std::vector<float> squared_;              // their squared distances from it
   std::vector<double> heights_;
   FaceVote vote_;
   std::size_t evaluations_ = 0, support_nodes_ = 0;

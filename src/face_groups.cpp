@@ -131,18 +131,20 @@ FaceGroups::separationsAt (const Eigen::Vector3d &x) const
 void
 FaceGroups::countNodes (const std::vector<int> &near)
 {
-  groups_.clear ();
+  nodes_of_place_.assign (present_.size () + 1, 0);
   for (const int slot : near)
+    ++nodes_of_place_[static_cast<std::size_t> (place_of_slot_[static_cast<std::size_t> (slot)] + 1)];
+  groups_.clear ();
+  for (std::size_t place = 0; place < present_.size (); ++place)
   {
-    const int place = place_of_slot_[static_cast<std::size_t> (slot)];
-    if (place < 0)
+    if (nodes_of_place_[place + 1] == 0)
       continue;
-    const int representative = representatives_[static_cast<std::size_t> (place)];
+    const int representative = representatives_[place];
     auto group = std::find_if (groups_.begin (), groups_.end (),
                                [&] (const Group &g) { return g.representative == representative; });
     if (group == groups_.end ())
       group = groups_.insert (groups_.end (), {representative, 0});
-    ++group->nodes;
+    group->nodes += nodes_of_place_[place + 1];
   }
 }
 

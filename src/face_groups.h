@@ -147,6 +147,7 @@ private:
   std::vector<int> place_of_slot_;   // in present_, -1 for none
   std::vector<int> representatives_; // of present_
   std::vector<int> group_of_place_;  // of present_
+  std::vector<int> nodes_of_place_;  // around x: of none, and then of present_
   std::vector<Pair> pairs_;
   std::vector<Group> groups_;
   std::vector<int> group_of_slot_;
