@@ -98,6 +98,34 @@ private:
   std::vector<Crease> lines_;
 };
 
+/** \brief Tells which sharp surface creases the surface at a place. */
+class SurfaceNamer
+{
+public:
+  explicit SurfaceNamer (const ImplicitField &field)
+      : local_ (field), groups_ (field.faces ()),
+        has_faces_only_ (!field.options ().warp && field.enrichingSurfaces ().empty ())
+  {
+  }
+
+  int
+  surfaceAt (const Eigen::Vector3d &x)
+  {
+    if (has_faces_only_ && groups_.gather (x, 0.0))
+    {
+      const std::vector<const Meeting *> near = groups_.separationsAt (x);
+      if (near.size () == 1) // no other can
+        return near.front ()->surface;
+    }
+    return local_.sharpSurfaceAt (x);
+  }
+
+private:
+  LocalField local_;
+  FaceGroups groups_;
+  bool has_faces_only_;
+};
+
 } // namespace
 
 std::vector<Crease>
@@ -109,11 +137,11 @@ traceCreases (const ImplicitField &field, const PolygonizerOptions &options, con
   const std::vector<VertexPair> kept = keepEdges (edges, triangles, vertices.positions.size ());
   std::vector<int> surfaces (kept.size (), -1);
   parallelFor (
-      kept.size (), options.threads, [&] { return LocalField (field); },
-      [&] (LocalField &local, std::size_t e)
+      kept.size (), options.threads, [&] { return SurfaceNamer (field); },
+      [&] (SurfaceNamer &namer, std::size_t e)
       {
         const auto at = [&] (int v) { return vertices.positions[static_cast<std::size_t> (v)]; };
-        surfaces[e] = local.sharpSurfaceAt (0.5 * (at (kept[e].first) + at (kept[e].second)));
+        surfaces[e] = namer.surfaceAt (0.5 * (at (kept[e].first) + at (kept[e].second)));
       });
   return LineTracer (kept, surfaces).trace ();
 }

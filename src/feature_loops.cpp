@@ -23,9 +23,9 @@ class LoopMesher
 {
 public:
   LoopMesher (const ImplicitField &field, const PolygonizerOptions &options, double voxel,
-              const SurfaceVertices &vertices)
+              const SurfaceVertices &vertices, bool has_border)
       : options_ (options), voxel_ (voxel), vertices_ (vertices), local_ (field),
-        channels_ (static_cast<std::size_t> (field.points ().channels))
+        channels_ (static_cast<std::size_t> (field.points ().channels)), has_border_ (has_border)
   {
   }
 
@@ -164,6 +164,8 @@ private:
   {
     if (!mayCrease (normalOf (a), normalOf (b)))
       return false;
+    if (turnBetween (normalOf (a), normalOf (b)) > CERTAIN_CREASE_TURN)
+      return true;
     gatherOnce (around);
     const Eigen::Vector3d middle = 0.5 * (position (a) + position (b));
     std::vector<LocalSample> samples;
@@ -199,10 +201,10 @@ private:
   void
   describeCenter (MeshedLoop &result)
   {
-    const LocalSample sample = local_.sample (result.position);
-    result.border_offset = sample.border_offset;
-    result.face = local_.face ();
+    result.face = vertices_.faces[static_cast<std::size_t> (sides_.front ())];
     result.attributes.resize (channels_);
+    if (has_border_ || channels_ > 0)
+      result.border_offset = local_.sample (result.position).border_offset;
     if (channels_ > 0)
       local_.blendAttributes (result.attributes.data ());
     std::vector<Eigen::Vector3d> normals; // of the faces: several sides of sharp surfaces can be of one
@@ -224,6 +226,7 @@ private:
   const SurfaceVertices &vertices_;
   LocalField local_;
   std::size_t channels_;
+  bool has_border_;                        // whether border offsets are wanted
   bool is_gathered_ = false;               // around the loop: most are where a sharp surface crosses a smooth one
   std::vector<int> sides_;                 // a vertex on each
   std::vector<Eigen::Vector3d> gradients_; // of the pieces of f on these sides where the crease was last found
@@ -233,11 +236,11 @@ private:
 
 std::vector<MeshedLoop>
 meshLoops (const ImplicitField &field, const PolygonizerOptions &options, const std::vector<CellLoop> &loops,
-           double voxel, const SurfaceVertices &vertices, PolygonizerReport &report)
+           double voxel, bool has_border, const SurfaceVertices &vertices, PolygonizerReport &report)
 {
   std::vector<MeshedLoop> meshed (loops.size ());
   parallelFor (
-      loops.size (), options.threads, [&] { return LoopMesher (field, options, voxel, vertices); },
+      loops.size (), options.threads, [&] { return LoopMesher (field, options, voxel, vertices, has_border); },
       [&] (LoopMesher &mesher, std::size_t i) { mesher.mesh (loops[i], meshed[i]); },
       [&report] (const LoopMesher &mesher)
       {

@@ -39,9 +39,10 @@ struct MeshedLoop
  * crease, or on the corner where there are more than two. (Kobbelt et al. 2001 guess it from normals: here it starts
  * from that guess.)
  * \param[in] voxel side of a grid cell
+ * \param[in] has_border whether the surface has one: only then border offsets are found
  */
 std::vector<MeshedLoop>
 meshLoops (const ImplicitField &field, const PolygonizerOptions &options, const std::vector<CellLoop> &loops,
-           double voxel, const SurfaceVertices &vertices, PolygonizerReport &report);
+           double voxel, bool has_border, const SurfaceVertices &vertices, PolygonizerReport &report);
 
 } // namespace erkpa

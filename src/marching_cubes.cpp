@@ -191,10 +191,11 @@ followSurface (SurfaceTracker &tracker, SparseGrid &grid, PolygonizerReport &rep
 /** \brief The loops that creases run through, as triangles with their vertices and edges on these. */
 std::vector<VertexPair>
 meshCreases (const ImplicitField &field, const PolygonizerOptions &options, const std::vector<CellLoop> &mixed_loops,
-             std::vector<Triangle> &triangles, SurfaceVertices &vertices, PolygonizerReport &report)
+             bool has_border, std::vector<Triangle> &triangles, SurfaceVertices &vertices, PolygonizerReport &report)
 {
   const StageClock clock (report.seconds_creases);
-  const std::vector<MeshedLoop> loops = meshLoops (field, options, mixed_loops, report.voxel_size, vertices, report);
+  const std::vector<MeshedLoop> loops =
+      meshLoops (field, options, mixed_loops, report.voxel_size, has_border, vertices, report);
   return addCreases (report.voxel_size, mixed_loops, loops, options.threads, triangles, vertices);
 }
 
@@ -215,7 +216,8 @@ meshSurface (const ImplicitField &field, const PolygonizerOptions &options, cons
   std::vector<Triangle> triangles = std::move (cell_mesh.triangles);
   meshCentered (cell_mesh.centered_loops, triangles, vertices);
   projectVertices (field, options, at_middles, 0.3 * voxel, vertices, report);
-  creases = meshCreases (field, options, cell_mesh.mixed_loops, triangles, vertices, report);
+  creases =
+      meshCreases (field, options, cell_mesh.mixed_loops, !cell_mesh.border.empty (), triangles, vertices, report);
   report.seconds_triangles -= report.seconds_creases; // which passed on both clocks
   const std::size_t in_cells = vertices.positions.size ();
   trimBorder (options.border_offset, options.threads, cell_mesh.border, triangles, vertices);
