@@ -50,8 +50,8 @@ class GrowthLister
 {
 public:
   GrowthLister (const OrientedPoints &points, const SegmentationOptions &options, const NodeLinks &links)
-      : points_ (points), links_ (links), spacing_ (options.spacing),
-        per_cost_ (Growths::BANDS / (options.angle + PER_SPACING * options.bridge_reach))
+      : points_ (points), links_ (links), per_length_ (static_cast<float> (PER_SPACING / options.spacing)),
+        per_cost_ (static_cast<float> (Growths::BANDS / (options.angle + PER_SPACING * options.bridge_reach)))
   {
   }
 
@@ -82,9 +82,10 @@ private:
     {
       if (j < node)
         continue;
-      const double turn = (normalOf (points_, node) - normalOf (points_, j)).norm ();
-      const double way = (positionOf (points_, j) - positionOf (points_, node)).norm () / spacing_;
-      growths.push_back ({static_cast<float> (turn + PER_SPACING * way), node, j});
+      const auto from = static_cast<std::size_t> (node), to = static_cast<std::size_t> (j);
+      const float turn = (points_.normals[from] - points_.normals[to]).norm ();
+      const float way = (points_.positions[to] - points_.positions[from]).norm ();
+      growths.push_back ({turn + per_length_ * way, node, j});
     }
   }
 
@@ -104,7 +105,7 @@ private:
 
   const OrientedPoints &points_;
   const NodeLinks &links_;
-  double spacing_, per_cost_;
+  float per_length_, per_cost_;
 };
 
 /** \brief Grows faces along the links, the smoothest first, without ever joining nodes that are apart. */

@@ -65,7 +65,7 @@ private:
     const double reach = options_.separation_reach * options_.separation_reach;
     strangers_.clear ();
     for (std::size_t i = 0; i < ball_.size (); ++i)
-      if (static_cast<double> (squared_[i]) <= reach && !test_.areSmooth (node, ball_[i]))
+      if (static_cast<double> (squared_[i]) <= reach && !test_.areSmooth (node, ball_[i], squared_[i]))
         strangers_.push_back (ball_[i]);
   }
 

@@ -74,18 +74,22 @@ PointGrid::spanBulk (const std::vector<Eigen::Vector3f> &positions)
   constexpr double ROOM = 0.5, MAX_SIDE = 1e6;
   const std::size_t step = std::max<std::size_t> (1, positions.size () / SAMPLE);
   Eigen::Array3d high;
-  std::vector<float> sorted;
+  std::vector<float> values;
   for (int a = 0; a < 3; ++a)
   {
-    sorted.clear ();
+    values.clear ();
     for (std::size_t i = 0; i < positions.size (); i += step)
-      sorted.push_back (positions[i][a]);
-    std::sort (sorted.begin (), sorted.end ());
-    const auto at = [&sorted] (std::size_t i) { return static_cast<double> (sorted[i]); };
-    const std::size_t stray = sorted.size () / STRAY;
-    const double from = at (stray), to = at (sorted.size () - 1 - stray), room = ROOM * (to - from) + cell_;
-    low_[a] = std::max (from - room, at (0) - cell_);
-    high[a] = std::min (to + room, at (sorted.size () - 1) + cell_);
+      values.push_back (positions[i][a]);
+    const auto at = [&values] (std::size_t i)
+    {
+      std::nth_element (values.begin (), values.begin () + static_cast<std::ptrdiff_t> (i), values.end ());
+      return static_cast<double> (values[i]);
+    };
+    const std::size_t stray = values.size () / STRAY;
+    const double from = at (stray), to = at (values.size () - 1 - stray), room = ROOM * (to - from) + cell_;
+    const auto [lowest, highest] = std::minmax_element (values.begin (), values.end ());
+    low_[a] = std::max (from - room, static_cast<double> (*lowest) - cell_);
+    high[a] = std::min (to + room, static_cast<double> (*highest) + cell_);
   }
   const auto bricks = [&] { return ((high - low_) / (8.0 * cell_)).floor () + 1.0; };
   const double most = std::max (4096.0, 0.25 * static_cast<double> (positions.size ()));

@@ -59,17 +59,19 @@ private:
   linkWithin (double reach, std::size_t i, Found &found, std::vector<int> &links) const
   {
     search_.withinRadius (points_.positions[i], reach, found.nodes, found.squared);
+    const int node = static_cast<int> (i);
+    const auto near = static_cast<float> (near_ * near_), far = static_cast<float> (far_ * far_);
     bool has_others = false;
-    for (const int j : found.nodes)
+    for (std::size_t n = 0; n < found.nodes.size (); ++n)
     {
-      const int node = static_cast<int> (i);
-      double distance = 0.0;
+      const int j = found.nodes[n];
+      const float squared = found.squared[n];
       if (j == node)
         continue;
-      if (test_.areLinked (node, j, distance) && distance <= far_)
+      if (squared <= far && test_.areLinked (node, j, squared))
         links.push_back (j);
       else
-        has_others = has_others || distance <= near_;
+        has_others = has_others || squared <= near;
     }
     return has_others;
   }

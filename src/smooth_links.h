@@ -24,49 +24,53 @@ normalOf (const OrientedPoints &points, int node)
   return points.normals[static_cast<std::size_t> (node)].cast<double> ();
 }
 
-/** \brief Tells what fits to one smooth surface. */
+/** \brief Tells what fits to one smooth surface. In floats and squares: it is asked for every pair of neighbours. */
 class SmoothnessTest
 {
 public:
   SmoothnessTest (const OrientedPoints &points, const SegmentationOptions &options)
-      : points_ (points), chord_ (options.chord), cosine_ (std::cos (options.angle)),
-        far_cosine_ (std::cos (BRIDGE_ANGLE * options.angle)), link_reach_ (options.link_reach * options.spacing)
+      : points_ (points), chord_ (static_cast<float> (options.chord)),
+        cosine_ (static_cast<float> (std::cos (options.angle))),
+        far_cosine_ (static_cast<float> (std::cos (BRIDGE_ANGLE * options.angle))),
+        squared_reach_ (static_cast<float> (std::pow (options.link_reach * options.spacing, 2)))
   {
   }
 
-  /** \brief Whether two nodes fit to one smooth surface. */
+  /** \brief Whether two nodes fit to one smooth surface.
+   * \param[in] squared their squared distance
+   */
   bool
-  areSmooth (int i, int j) const
+  areSmooth (int i, int j, float squared) const
   {
-    const Eigen::Vector3d way = positionOf (points_, j) - positionOf (points_, i);
-    return areSmooth (i, j, way, way.norm (), cosine_, BEND);
+    return areSmooth (i, j, squared, cosine_, BEND);
   }
 
   /** \brief Whether to link two nodes. Those farther apart must agree better: they bridge gaps in narrow faces. */
   bool
-  areLinked (int i, int j, double &distance) const
+  areLinked (int i, int j, float squared) const
   {
-    const Eigen::Vector3d way = positionOf (points_, j) - positionOf (points_, i);
-    distance = way.norm ();
-    return distance <= link_reach_ ? areSmooth (i, j, way, distance, cosine_, BEND)
-                                   : areSmooth (i, j, way, distance, far_cosine_, BRIDGE_BEND);
+    return squared <= squared_reach_ ? areSmooth (i, j, squared, cosine_, BEND)
+                                     : areSmooth (i, j, squared, far_cosine_, BRIDGE_BEND);
   }
 
 private:
-  static constexpr double BEND = 0.2, BRIDGE_BEND = 0.08, BRIDGE_ANGLE = 0.7;
+  static constexpr float BEND = 0.2f, BRIDGE_BEND = 0.08f;
+  static constexpr double BRIDGE_ANGLE = 0.7;
 
   /** \brief Similar normals, and across them no step.
    * \param[in] bend how large a step may be as a share of the distance; that of a circular arc is zero
    */
   bool
-  areSmooth (int i, int j, const Eigen::Vector3d &way, double distance, double least_cosine, double bend) const
+  areSmooth (int i, int j, float squared, float least_cosine, float bend) const
   {
-    const Eigen::Vector3d n = normalOf (points_, i), m = normalOf (points_, j);
-    return n.dot (m) >= least_cosine && 0.5 * std::abs (way.dot (n + m)) <= std::max (bend * distance, chord_);
+    const auto from = static_cast<std::size_t> (i), to = static_cast<std::size_t> (j);
+    const Eigen::Vector3f &n = points_.normals[from], &m = points_.normals[to];
+    const float step = 0.5f * std::abs ((points_.positions[to] - points_.positions[from]).dot (n + m));
+    return n.dot (m) >= least_cosine && (step <= chord_ || step * step <= bend * bend * squared);
   }
 
   const OrientedPoints &points_;
-  double chord_, cosine_, far_cosine_, link_reach_;
+  float chord_, cosine_, far_cosine_, squared_reach_;
 };
 
 /** \brief Links nodes with the neighbours that fit to them.
