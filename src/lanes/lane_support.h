@@ -23,6 +23,11 @@ public:
     kth_ = radius_ * radius_;
     if (settings.k > 0)
       findNearest (B::load_unaligned (points.guess + first));
+    else
+    {
+      listWithin (nodes.count);
+      is_listed_ = true;
+    }
     inverse_ = B (1.0f) / radius_;
   }
 
@@ -99,25 +104,31 @@ public:
   }
 
 private:
-  /** \brief Lists the nodes that may lie within the bounds of some lane, with their distances.
+  /** \brief Lists those of the first \a count value points that may lie within the bounds of some lane.
    *
    * Those within a ball around all of them: for once the lanes are nodes, for there are many more of these.
    */
   void
-  listWithin ()
+  listWithin (std::size_t count)
   {
     float middle[3], reach = 0.0f;
     findBall (middle, reach);
     const B limit (reach * reach);
     listed_ = 0;
-    for (std::size_t first = 0; first < nodes_.on_surface; first += WIDTH)
+    for (std::size_t first = 0; first < count; first += WIDTH)
     {
       const B dx = B::load_unaligned (nodes_.x + first) - B (middle[0]);
       const B dy = B::load_unaligned (nodes_.y + first) - B (middle[1]);
       const B dz = B::load_unaligned (nodes_.z + first) - B (middle[2]);
       const B margin = limit - xsimd::fma (dz, dz, xsimd::fma (dy, dy, dx * dx));
-      listed_ += appendWhere (margin, first, nodes_.on_surface - first, list_ + listed_);
+      listed_ += appendWhere (margin, first, count - first, list_ + listed_);
     }
+  }
+
+  /** \brief The squared distances of the listed nodes, a row for each. */
+  void
+  measureDistances ()
+  {
     for (std::size_t i = 0; i < listed_; ++i)
     {
       B d[3];
@@ -187,7 +198,8 @@ private:
   {
     constexpr int STEPS = 10, EVEN = 5;
     B low (0.0f), high = radius_ * radius_ * B (1.0f + 1e-5f);
-    listWithin ();
+    listWithin (nodes_.on_surface);
+    measureDistances ();
     B in_low (0.0f), in_high = countWithin (high);
     B middle = xsimd::min (guess * guess, high);
     const B k (k_);

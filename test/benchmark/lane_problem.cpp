@@ -111,7 +111,7 @@ LaneProblem::makeNodes (std::size_t count, double extent)
       normals_[a][i] = static_cast<float> (normal[a] / length);
     }
   }
-  list_.resize (count + 1);
+  list_.resize (count + MAX_WIDTH);
   rows_.resize (MAX_WIDTH * (count + 1));
 }
 
