@@ -76,7 +76,7 @@ BlockFaces::gatherNodes (double radius)
   if (has_nodes_)
     return;
   all_.find (center_, Support::PART_REACH * (radius + extent_) + extent_);
-  all_.copy ();
+  all_.copyPositions ();
   groups_.assign (all_.count (), [this] (std::size_t i) { return all_.node (i); });
   has_nodes_ = true;
 }
@@ -137,17 +137,17 @@ BlockFaces::askForParts (const BlockPoints &points, std::uint32_t point, Combine
     part.state = lanes::State::UNDEFINED;
     parts_.push_back (part);
   }
+  const double scale = 1.0 / static_cast<double> (radius);
   for (std::size_t n = 0; n < near_.size (); ++n)
   {
     const int node = near_[n], group = groups_.groupOfSlot (node);
     const auto i = static_cast<std::size_t> (node);
-    const double weight =
-        1.0 - std::sqrt (static_cast<double> (squared_[n])) / (FaceGroups::REACH * static_cast<double> (radius));
+    const double weight = 1.0 - static_cast<double> (std::sqrt (squared_[n])) * (scale / FaceGroups::REACH);
     if (group < 0 || group >= combined.groups || !(weight > 0.0))
       continue;
     const Eigen::Vector3f way (all_.coordinates (0)[i] - x[0], all_.coordinates (1)[i] - x[1],
                                all_.coordinates (2)[i] - x[2]);
-    voters_.push_back ({node, way.cast<double> () / static_cast<double> (radius), weight});
+    voters_.push_back ({node, way.cast<double> () * scale, weight});
   }
   combined.last_voter = voters_.size ();
 }

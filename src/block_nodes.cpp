@@ -81,18 +81,12 @@ BlockNodes::copy ()
   value_points_ = per_node * count_;
   const bool has_values = field_.hasNodeValues () || per_node > 1;
   const bool has_confidences = !table_.confidences.empty ();
+  copyPositions ();
   for (std::size_t a = 0; a < 3; ++a)
   {
-    positions_[a].resize (value_points_ + lanes::MAX_WIDTH);
     normals_[a].resize (value_points_);
-    const std::vector<float> &from = table_.grid->coordinates (static_cast<int> (a));
-    const auto center = static_cast<float> (center_[static_cast<Eigen::Index> (a)]);
-    const auto scale = static_cast<float> (inverse_unit_);
     for (std::size_t i = 0; i < count_; ++i)
-    {
-      positions_[a][i] = (from[places_[i]] - center) * scale;
       normals_[a][i] = table_.normals[a][places_[i]];
-    }
   }
   confidences_.resize (has_confidences ? value_points_ : 0);
   for (std::size_t i = 0; i < confidences_.size (); ++i)
@@ -107,6 +101,21 @@ BlockNodes::copy ()
       const auto offset = static_cast<float> (sideOf (i) * inverse_unit_ * field_.offsetOf (node (i % count_)));
       positions_[a][i] = positions_[a][i % count_] + offset * normals_[a][i];
     }
+}
+
+void
+BlockNodes::copyPositions ()
+{
+  const auto per_node = static_cast<std::size_t> (field_.valuesPerNode ());
+  const auto scale = static_cast<float> (inverse_unit_);
+  for (std::size_t a = 0; a < 3; ++a)
+  {
+    positions_[a].resize (per_node * count_ + lanes::MAX_WIDTH);
+    const std::vector<float> &from = table_.grid->coordinates (static_cast<int> (a));
+    const auto center = static_cast<float> (center_[static_cast<Eigen::Index> (a)]);
+    for (std::size_t i = 0; i < count_; ++i)
+      positions_[a][i] = (from[places_[i]] - center) * scale;
+  }
 }
 
 void

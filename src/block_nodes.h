@@ -86,11 +86,15 @@ public:
   void
   copy ();
 
+  /** \brief Make those of the nodes' positions only. */
+  void
+  copyPositions ();
+
   /** \brief Make the array of attributes, which are wanted at few points only. */
   void
   copyAttributes ();
 
-  /** \brief A coordinate of the nodes, after copy (). */
+  /** \brief A coordinate of the nodes, after copy () or copyPositions (). */
   const float *
   coordinates (std::size_t axis) const
   {

@@ -61,14 +61,16 @@ FaceGroups::findPairs (const Eigen::Vector3d &x)
 {
   pairs_.clear ();
   bool any = false;
+  auto pair = pairs_.begin (); // meetings of the same faces mostly follow each other
   for (const int m : near_)
   {
     const Meeting &meeting = faces_->meetings ()[static_cast<std::size_t> (m)];
     const double squared = (meeting.position.cast<double> () - x).squaredNorm ();
     if (squared > meeting.reach * meeting.reach)
       continue;
-    auto pair = std::find_if (pairs_.begin (), pairs_.end (),
-                              [&] (const Pair &p) { return p.face == meeting.face && p.other == meeting.other; });
+    const auto is_of_pair = [&] (const Pair &p) { return p.face == meeting.face && p.other == meeting.other; };
+    if (pair == pairs_.end () || !is_of_pair (*pair))
+      pair = std::find_if (pairs_.begin (), pairs_.end (), is_of_pair);
     if (pair == pairs_.end ())
       pair = pairs_.insert (pairs_.end (), {meeting.face, meeting.other, HUGE_VAL, HUGE_VAL});
     double &nearest = meeting.surface >= 0 ? pair->separate : pair->joined;
