@@ -11,8 +11,8 @@ namespace erkpa
 /** \brief Normals of two sides that turn by less than this are no crease: radians, 4 degrees. */
 constexpr double LEAST_CREASE_TURN = 0.07;
 
-/** \brief Normals of neighbouring vertices on two sides that turn by more than this are one for sure: no smooth surface
- * that its nodes show turns so far within a cell. */
+/** \brief Normals of neighbouring vertices on faces that are apart are a crease for sure where they turn by more than
+ * this. */
 constexpr double CERTAIN_CREASE_TURN = 0.8; // radians, 46 degrees
 
 /** \brief Angle between two directions of any length. */

@@ -129,6 +129,22 @@ FaceGroups::separationsAt (const Eigen::Vector3d &x) const
   return nearest;
 }
 
+bool
+FaceGroups::keepsApart (int face, int other, const Eigen::Vector3d &x) const
+{
+  bool any = false;
+  for (const int m : near_)
+  {
+    const Meeting &meeting = faces_->meetings ()[static_cast<std::size_t> (m)];
+    if ((meeting.position.cast<double> () - x).squaredNorm () > meeting.reach * meeting.reach)
+      continue;
+    if (meeting.surface < 0)
+      return false;
+    any = any || (meeting.face == std::min (face, other) && meeting.other == std::max (face, other));
+  }
+  return any;
+}
+
 /** \brief Make the groups that have nodes in reach. */
 void
 FaceGroups::countNodes (const std::vector<int> &near)

@@ -93,6 +93,10 @@ public:
   std::vector<const Meeting *>
   separationsAt (const Eigen::Vector3d &x) const;
 
+  /** \brief Whether two faces are kept apart at \a x, and no faces are joined there. */
+  bool
+  keepsApart (int face, int other, const Eigen::Vector3d &x) const;
+
   /** \brief The group that a face is of; -1 where it is of none. */
   int
   groupOf (int face) const;

@@ -164,10 +164,11 @@ private:
   {
     if (!mayCrease (normalOf (a), normalOf (b)))
       return false;
-    if (turnBetween (normalOf (a), normalOf (b)) > CERTAIN_CREASE_TURN)
-      return true;
     gatherOnce (around);
     const Eigen::Vector3d middle = 0.5 * (position (a) + position (b));
+    if (turnBetween (normalOf (a), normalOf (b)) > CERTAIN_CREASE_TURN &&
+        local_.keepsApart (sideOf (a).face, sideOf (b).face, middle))
+      return true;
     std::vector<LocalSample> samples;
     local_.sampleOnSides (middle, {sideOf (a), sideOf (b)}, samples, LocalField::Slope::OF_THE_FIT);
     const LocalSample &one = samples.front (), &other = samples.back ();

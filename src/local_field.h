@@ -82,6 +82,15 @@ public:
   sampleOnSides (const Eigen::Vector3d &x, const std::vector<Side> &sides, std::vector<LocalSample> &samples,
                  Slope slope = Slope::EXACT);
 
+  /** \brief Whether two faces are kept apart at x, and no faces are joined there; false where that takes a fit to know.
+   * \param[in] x in the ball that was gathered for
+   */
+  bool
+  keepsApart (int face, int other, const Eigen::Vector3d &x) const
+  {
+    return warp_ == nullptr && (x - ball_center_).norm () <= ball_extent_ && groups_.keepsApart (face, other, x);
+  }
+
   /** \brief The sharp surface that cuts the crease at x: its place in the field's options; -1 where there is none. */
   int
   sharpSurfaceAt (const Eigen::Vector3d &x);
