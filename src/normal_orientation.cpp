@@ -104,40 +104,55 @@ linkNeighbors (const OrientedPoints &points, const NeighborSearch &search, const
       STRETCH);
 }
 
-/** \brief What the nodes say about their signs, and what the layers say about the outside. */
-struct Network
+/** \brief The facets, and what the layers that they make say about the outside. */
+struct Survey
 {
   Facets facets;
-  std::vector<SignedLink> links;
-  std::vector<int> pieces;        ///< of each node
   std::vector<LayerVotes> layers; ///< of each node
-  std::map<int, double> open;     ///< of each piece: the share of columns with an odd number of layers
-  double all_open = 0.0;          ///< the same of all nodes
+  double open = 0.0;              ///< share of columns with an odd number of layers
+};
+
+Survey
+survey (const OrientedPoints &points, const NeighborSearch &search, SurfaceKind kind, int k, int threads,
+        const std::vector<Eigen::Vector3f> &normals)
+{
+  Survey result;
+  result.facets = findFacets (points, search, kind, k, threads, normals);
+  result.layers = votesOfLayers (points, result.facets, threads);
+  double odd = 0.0, all = 0.0;
+  for (const LayerVotes &layers : result.layers)
+  {
+    odd += layers.odd;
+    all += layers.odd + layers.even;
+  }
+  result.open = all > 0.0 ? odd / all : 1.0;
+  return result;
+}
+
+/** \brief What the nodes say about their signs. */
+struct Network
+{
+  std::vector<SignedLink> links;
+  std::vector<int> pieces;    ///< of each node
+  std::map<int, double> open; ///< of each piece: the share of columns with an odd number of layers
 };
 
 Network
-connect (const OrientedPoints &points, const NeighborSearch &search, SurfaceKind kind, int k, int threads,
-         const std::vector<Eigen::Vector3f> &normals)
+connect (const OrientedPoints &points, const NeighborSearch &search, const Survey &survey, int threads)
 {
   Network network;
-  network.facets = findFacets (points, search, kind, k, threads, normals);
-  const int neighbors = std::max<int> (LINKS + 1, network.facets.k / 2);
-  network.links = linkNeighbors (points, search, network.facets, neighbors, threads);
+  const int neighbors = std::max<int> (LINKS + 1, survey.facets.k / 2);
+  network.links = linkNeighbors (points, search, survey.facets, neighbors, threads);
   network.pieces = piecesOf (static_cast<int> (points.size ()), network.links);
-  network.layers = votesOfLayers (points, network.facets, threads);
   std::map<int, double> odd, all;
-  double odd_sum = 0.0, sum = 0.0;
   for (std::size_t i = 0; i < points.size (); ++i)
   {
-    const LayerVotes &layers = network.layers[i];
+    const LayerVotes &layers = survey.layers[i];
     odd[network.pieces[i]] += layers.odd;
     all[network.pieces[i]] += layers.odd + layers.even;
-    odd_sum += layers.odd;
-    sum += layers.odd + layers.even;
   }
   for (const auto &[piece, count] : all)
     network.open[piece] = count > 0.0 ? odd[piece] / count : 1.0;
-  network.all_open = sum > 0.0 ? odd_sum / sum : 1.0;
   return network;
 }
 
@@ -208,24 +223,26 @@ Pieces
 agree (const OrientedPoints &points, const NeighborSearch &search, int k, int threads,
        std::vector<Eigen::Vector3f> &normals, std::vector<char> &turned)
 {
-  Network network = connect (points, search, SurfaceKind::CLOSED, k, threads, normals);
-  if (network.all_open > OPEN)
-    network = connect (points, search, SurfaceKind::OPEN, k, threads, normals);
+  Survey known = survey (points, search, SurfaceKind::CLOSED, k, threads, normals);
+  if (known.open > OPEN)
+    known = survey (points, search, SurfaceKind::OPEN, k, threads, normals);
+  Network network = connect (points, search, known, threads);
+  const std::size_t between_neighbors = network.links.size ();
   const auto count = static_cast<int> (points.size ());
   std::vector<int> layers (points.size (), 0);
   for (std::size_t i = 0; i < points.size (); ++i)
     if (network.open[network.pieces[i]] < OPEN)
     {
-      layers[i] = network.layers[i].outwards;
+      layers[i] = known.layers[i].outwards;
       if (layers[i] != 0) // the node after the last is the outside
         network.links.push_back ({static_cast<int> (i), count, LAYER_WEIGHT * static_cast<float> (layers[i])});
     }
-  const std::vector<char> flips = agreeOnSigns (count + 1, network.links);
+  const std::vector<char> flips = agreeOnSigns (count + 1, network.links, between_neighbors, threads);
   Pieces pieces;
   pieces.of_node = network.pieces;
   for (std::size_t i = 0; i < points.size (); ++i)
   {
-    const Eigen::Vector3f &facet = network.facets.of_node[i].normal;
+    const Eigen::Vector3f &facet = known.facets.of_node[i].normal;
     if (points.normals[i].isZero (0.0f) && std::abs (facet.dot (normals[i])) < ASTRAY)
       normals[i] = facet;
     turned[i] = (flips[i] != 0) != (facet.dot (normals[i]) < 0.0f);

@@ -1,8 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "orientation_graph.h"
 
+#include "parallel_collect.h"
+
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <functional>
 #include <numeric>
 #include <queue>
 #include <tuple>
@@ -42,10 +46,12 @@ public:
         of (link.from)[link.to] += link.weight;
         of (link.to)[link.from] += link.weight;
       }
+    std::vector<Candidate> candidates;
     for (int i = 0; i < count; ++i)
       for (const auto &[j, weight] : of (i))
         if (i < j)
-          queue_.push ({std::abs (weight), i, j});
+          candidates.push_back ({std::abs (weight), i, j});
+    queue_ = std::priority_queue<Candidate> (std::less<Candidate> (), std::move (candidates));
   }
 
   void
@@ -119,14 +125,155 @@ private:
   std::priority_queue<Candidate> queue_;
 };
 
+/** \brief Finds the links between neighbours that are sure by themselves, and that no third node contradicts. */
+class SureLinks
+{
+public:
+  static constexpr float SURE = 0.6f; // two neighbours in a plane, a spacing apart: 0.78
+
+  /** \param[in] count of the nodes
+   * \param[in] links sorted by the nodes that they lead from; \a size of them are between neighbours
+   */
+  SureLinks (int count, const std::vector<SignedLink> &links, std::size_t size)
+      : links_ (links), size_ (size), firsts_ (static_cast<std::size_t> (count) + 1, size)
+  {
+    for (std::size_t i = size; i-- > 0;)
+      firsts_[static_cast<std::size_t> (links[i].from)] = i;
+    for (std::size_t node = firsts_.size () - 1; node-- > 0;)
+      firsts_[node] = std::min (firsts_[node], firsts_[node + 1]);
+  }
+
+  std::vector<SignedLink>
+  find (int threads) const
+  {
+    return parallelCollect<SignedLink> (size_, threads,
+                                        [this] (std::size_t first, std::size_t last, std::vector<SignedLink> &found)
+                                        {
+                                          for (std::size_t i = first; i < last; ++i)
+                                            if (std::abs (links_[i].weight) >= SURE && !isContradicted (links_[i]))
+                                              found.push_back (links_[i]);
+                                        });
+  }
+
+private:
+  /** \brief Whether a common neighbour sees the one node of a link so and the other so that the link would be wrong. */
+  bool
+  isContradicted (const SignedLink &link) const
+  {
+    constexpr float AUDIBLE = 0.03f; // votes for less do not count
+    for (const SignedLink *ours = begin (link.from); ours != begin (link.from + 1); ++ours)
+      for (const SignedLink *theirs = begin (link.to); theirs != begin (link.to + 1); ++theirs)
+        if (ours->to == theirs->to && ours->weight * theirs->weight * link.weight < 0.0f &&
+            std::min (std::abs (ours->weight), std::abs (theirs->weight)) > AUDIBLE)
+          return true;
+    return false;
+  }
+
+  const SignedLink *
+  begin (int node) const
+  {
+    return links_.data () + firsts_[static_cast<std::size_t> (node)];
+  }
+
+  const std::vector<SignedLink> &links_;
+  std::size_t size_;
+  std::vector<std::size_t> firsts_; // links of each node
+};
+
+/** \brief Sets of nodes that know their signs relative to each other. */
+class SureSets
+{
+public:
+  explicit SureSets (int count) : parents_ (static_cast<std::size_t> (count)), flips_ (parents_.size (), 0)
+  {
+    std::iota (parents_.begin (), parents_.end (), 0);
+  }
+
+  /** \brief Join what links join, the surest first. */
+  void
+  join (const std::vector<SignedLink> &links)
+  {
+    constexpr std::array<float, 4> BANDS{0.9f, 0.8f, 0.7f, 0.0f};
+    for (const float least : BANDS)
+      for (const SignedLink &link : links)
+        if (std::abs (link.weight) >= least)
+          unite (link);
+  }
+
+  /** \brief Per node the set that it is in, named by one of its nodes, and whether it is opposite to that. */
+  void
+  results (std::vector<int> &sets, std::vector<char> &flips)
+  {
+    for (std::size_t i = 0; i < parents_.size (); ++i)
+      find (static_cast<int> (i));
+    sets = parents_;
+    flips = flips_;
+  }
+
+private:
+  /** \brief The root of a node, which becomes its parent. */
+  int
+  find (int node)
+  {
+    path_.clear ();
+    for (; parents_[static_cast<std::size_t> (node)] != node; node = parents_[static_cast<std::size_t> (node)])
+      path_.push_back (static_cast<std::size_t> (node));
+    char flip = 0;
+    for (auto below = path_.rbegin (); below != path_.rend (); ++below)
+    {
+      flip = flips_[*below] ^= flip;
+      parents_[*below] = node;
+    }
+    return node;
+  }
+
+  void
+  unite (const SignedLink &link)
+  {
+    const int a = find (link.from), b = find (link.to);
+    const char flip = flips_[static_cast<std::size_t> (link.from)] ^ flips_[static_cast<std::size_t> (link.to)] ^
+                      (link.weight < 0.0f ? 1 : 0);
+    if (a == b)
+      return;
+    parents_[static_cast<std::size_t> (std::max (a, b))] = std::min (a, b);
+    flips_[static_cast<std::size_t> (std::max (a, b))] = flip;
+  }
+
+  std::vector<int> parents_;
+  std::vector<char> flips_; // against the parent; none of a root
+  std::vector<std::size_t> path_;
+};
+
+/** \brief What the sets say about each other. */
+std::vector<SignedLink>
+linksOfSets (const std::vector<SignedLink> &links, const std::vector<int> &sets, const std::vector<char> &flips)
+{
+  std::vector<SignedLink> between;
+  for (const SignedLink &link : links)
+  {
+    const auto from = static_cast<std::size_t> (link.from), to = static_cast<std::size_t> (link.to);
+    if (sets[from] != sets[to])
+      between.push_back ({sets[from], sets[to], flips[from] != flips[to] ? -link.weight : link.weight});
+  }
+  return between;
+}
+
 } // namespace
 
 std::vector<char>
-agreeOnSigns (int count, const std::vector<SignedLink> &links)
+agreeOnSigns (int count, const std::vector<SignedLink> &links, std::size_t between_neighbors, int threads)
 {
-  Contraction contraction (count, links);
+  SureSets sure (count);
+  sure.join (SureLinks (count, links, between_neighbors).find (threads));
+  std::vector<int> sets;
+  std::vector<char> flips;
+  sure.results (sets, flips);
+  Contraction contraction (count, linksOfSets (links, sets, flips));
   contraction.run ();
-  return contraction.flips ();
+  const std::vector<char> flips_of_sets = contraction.flips ();
+  for (std::size_t i = 0; i < flips.size (); ++i)
+    flips[i] ^= flips_of_sets[static_cast<std::size_t> (sets[i])];
+  return flips;
 }
 
 std::vector<int>
