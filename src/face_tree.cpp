@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <numeric>
-#include <set>
 
 namespace erkpa
 {
@@ -11,26 +10,41 @@ namespace erkpa
 namespace
 {
 
-/** \brief Who wins for every order of the values: trees that agree in all of them are the same. */
-std::vector<int>
-signatureOf (const FaceTree &tree)
+int
+followSteps (const FaceTree &tree, const std::array<int, FaceTree::MAX_FACES> &values)
 {
-  std::array<double, FaceTree::MAX_FACES> values{};
-  std::iota (values.begin (), values.end (), 0.0);
-  std::vector<int> winners;
+  std::array<std::size_t, FaceTree::MAX_FACES> best{0, 1, 2, 3};
+  std::size_t last = 0;
+  for (std::size_t s = 0; s + 1 < static_cast<std::size_t> (tree.faces); ++s)
+  {
+    const FaceTree::Step &step = tree.steps[s];
+    last = static_cast<std::size_t> (step.face);
+    const std::size_t other = best[static_cast<std::size_t> (step.other)];
+    if ((values[other] > values[best[last]]) == step.larger)
+      best[last] = other;
+  }
+  return static_cast<int> (best[last]);
+}
+
+/** \brief Who wins for every order of the values: trees that agree in all of them are the same. */
+void
+findWinners (FaceTree &tree)
+{
+  std::array<int, FaceTree::MAX_FACES> values{0, 1, 2, 3};
+  std::size_t order = 0;
   do
-    winners.push_back (tree.winner (values.data ()));
+    tree.winners[order++] = static_cast<std::uint8_t> (followSteps (tree, values));
   while (std::next_permutation (values.begin (), values.begin () + tree.faces));
-  return winners;
 }
 
 void
-addTrees (const FaceTree &begun, int step, std::vector<int> left, std::set<std::vector<int>> &known,
-          std::vector<FaceTree> &trees)
+addTrees (FaceTree begun, int step, const std::vector<int> &left, std::vector<FaceTree> &trees)
 {
   if (left.size () == 1)
   {
-    if (known.insert (signatureOf (begun)).second)
+    findWinners (begun);
+    const auto is_same = [&begun] (const FaceTree &tree) { return tree.winners == begun.winners; };
+    if (std::none_of (trees.begin (), trees.end (), is_same))
       trees.push_back (begun);
     return;
   }
@@ -42,7 +56,7 @@ addTrees (const FaceTree &begun, int step, std::vector<int> left, std::set<std::
         tree.steps[static_cast<std::size_t> (step)] = {left[i], left[j], larger};
         std::vector<int> rest = left;
         rest.erase (rest.begin () + static_cast<std::ptrdiff_t> (j));
-        addTrees (tree, step + 1, rest, known, trees);
+        addTrees (tree, step + 1, rest, trees);
       }
 }
 
@@ -52,32 +66,13 @@ makeTrees (int faces)
   std::vector<FaceTree> trees;
   std::vector<int> all (static_cast<std::size_t> (faces));
   std::iota (all.begin (), all.end (), 0);
-  std::set<std::vector<int>> known;
   FaceTree tree;
   tree.faces = faces;
-  addTrees (tree, 0, all, known, trees);
+  addTrees (tree, 0, all, trees);
   return trees;
 }
 
 } // namespace
-
-int
-FaceTree::winner (const double *values) const
-{
-  std::array<int, MAX_FACES> best{};
-  std::iota (best.begin (), best.end (), 0);
-  int last = 0;
-  for (int s = 0; s + 1 < faces; ++s)
-  {
-    const Step &step = steps[static_cast<std::size_t> (s)];
-    int &mine = best[static_cast<std::size_t> (step.face)];
-    const int other = best[static_cast<std::size_t> (step.other)];
-    if ((values[other] > values[mine]) == step.larger)
-      mine = other;
-    last = step.face;
-  }
-  return best[static_cast<std::size_t> (last)];
-}
 
 bool
 FaceTree::takesLarger (int face, int other) const

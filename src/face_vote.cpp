@@ -59,50 +59,36 @@ FaceVote::dropFarFaces ()
   heights_.resize (kept * voters);
 }
 
-/** \brief The same between the two trees of two faces, by far the most frequent case. */
-const FaceTree &
-FaceVote::electOfTwo (const std::vector<FaceTree> &trees) const
-{
-  const double *ours = heights_.data (), *theirs = ours + voters_.size ();
-  double of_larger = 0.0, of_smaller = 0.0;
-  for (std::size_t i = 0; i < voters_.size (); ++i)
-  {
-    of_larger += voters_[i].weight * std::abs (std::max (ours[i], theirs[i]));
-    of_smaller += voters_[i].weight * std::abs (std::min (ours[i], theirs[i]));
-  }
-  const bool first_takes_larger = trees.front ().steps.front ().larger;
-  const double of_first = first_takes_larger ? of_larger : of_smaller,
-               of_second = first_takes_larger ? of_smaller : of_larger;
-  return trees[of_second < of_first ? 1 : 0];
-}
-
 const FaceTree &
 FaceVote::electTree () const
 {
-  const std::vector<FaceTree> &trees = treesOf (static_cast<int> (groups_.size ()));
+  const std::size_t faces = groups_.size (), voters = voters_.size ();
+  const std::vector<FaceTree> &trees = treesOf (static_cast<int> (faces));
   if (trees.size () == 1)
     return trees.front ();
-  if (groups_.size () == 2)
-    return electOfTwo (trees);
-  const FaceTree *best = &trees.front ();
-  double least = HUGE_VAL;
-  std::array<double, FaceTree::MAX_FACES> heights{};
-  for (const FaceTree &tree : trees)
+  // Voters that see the faces in the same order agree which one counts: they vote together.
+  using OfFaces = std::array<double, FaceTree::MAX_FACES>;
+  std::array<OfFaces, FaceTree::MAX_ORDERS> sums; // as many as there are orders
+  const std::size_t orders = faces == 2 ? 2 : faces == 3 ? 6 : FaceTree::MAX_ORDERS;
+  std::fill_n (sums.begin (), orders, OfFaces{});
+  OfFaces heights{};
+  for (std::size_t i = 0; i < voters; ++i)
+  {
+    for (std::size_t f = 0; f < faces; ++f)
+      heights[f] = heights_[f * voters + i];
+    OfFaces &sum = sums[FaceTree::orderOf (heights.data (), static_cast<int> (faces))];
+    for (std::size_t f = 0; f < faces; ++f)
+      sum[f] += voters_[i].weight * std::abs (heights[f]);
+  }
+  const auto distance = [&] (const FaceTree &tree)
   {
     double sum = 0.0;
-    for (std::size_t i = 0; i < voters_.size () && sum < least; ++i)
-    {
-      for (std::size_t f = 0; f < groups_.size (); ++f)
-        heights[f] = heights_[f * voters_.size () + i];
-      sum += voters_[i].weight * std::abs (heights[static_cast<std::size_t> (tree.winner (heights.data ()))]);
-    }
-    if (sum < least)
-    {
-      least = sum;
-      best = &tree;
-    }
-  }
-  return *best;
+    for (std::size_t order = 0; order < orders; ++order)
+      sum += sums[order][tree.winners[order]];
+    return sum;
+  };
+  return *std::min_element (trees.begin (), trees.end (),
+                            [&] (const FaceTree &a, const FaceTree &b) { return distance (a) < distance (b); });
 }
 
 bool

@@ -113,9 +113,6 @@ public:
   isInThinWall (const FaceTree &tree, double most) const;
 
 private:
-  const FaceTree &
-  electOfTwo (const std::vector<FaceTree> &trees) const;
-
   /** \brief How thick the wall or gap between two opposite faces is at x, negative beyond the edge in which they meet.
    * \return false where they are not opposite
    */
