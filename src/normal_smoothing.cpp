@@ -8,6 +8,7 @@
 #include <Eigen/Geometry>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 namespace erkpa
@@ -25,6 +26,43 @@ termsAt (double x, double y)
   terms << 1.0, x, y, x * x, x * y, y * y;
   return terms;
 }
+
+/** \brief Weighted sums over points of what a HeightFit is from. */
+struct HeightSums
+{
+  std::array<double, 15> powers{}; ///< x^a y^b for a + b = 0, 1 .. 4, each rising with b
+  Terms of_heights = Terms::Zero ();
+  double squares = 0.0; ///< of the heights
+  double used = 0.0;    ///< number of points
+
+  void
+  add (const Eigen::Vector3d &p, double w)
+  {
+    const double x = p.x (), y = p.y (), xx = w * x * x, xy = w * x * y, yy = w * y * y;
+    const std::array<double, 15> all{w,      w * x,  w * y,      xx,         xy,         yy,         xx * x,    xx * y,
+                                     xy * y, yy * y, xx * x * x, xx * x * y, xx * y * y, xy * y * y, yy * y * y};
+    for (std::size_t i = 0; i < all.size (); ++i)
+      powers[i] += all[i];
+    of_heights += w * p.z () * termsAt (x, y);
+    squares += w * p.z () * p.z ();
+    used += 1.0;
+  }
+
+  /** \brief The sums of products of the terms. */
+  Eigen::Matrix<double, 6, 6>
+  moments () const
+  {
+    constexpr std::array<std::size_t, 6> OF_X{0, 1, 0, 2, 1, 0}, OF_Y{0, 0, 1, 0, 1, 2}; // exponents in the terms
+    Eigen::Matrix<double, 6, 6> moments;
+    for (std::size_t i = 0; i < 6; ++i)
+      for (std::size_t j = 0; j < 6; ++j)
+      {
+        const std::size_t b = OF_Y[i] + OF_Y[j], degree = OF_X[i] + OF_X[j] + b;
+        moments (static_cast<Eigen::Index> (i), static_cast<Eigen::Index> (j)) = powers[degree * (degree + 1) / 2 + b];
+      }
+    return moments;
+  }
+};
 
 double
 radians (double degrees)
@@ -106,29 +144,22 @@ HeightFit::HeightFit (const std::vector<Eigen::Vector3f> &points, const std::vec
   constexpr double BEND = 0.15; // expected second derivative, in 1 / spacing
   const double ridge = std::pow (noise / (BEND * spacing), 2) + 1e-6;
   setFrame (points, weights, side);
-  Eigen::Matrix<double, 6, 6> moments = Eigen::Matrix<double, 6, 6>::Zero (); // lower half; lengths in spacings
-  Terms sums = Terms::Zero ();
-  double squares = 0.0, used = 0.0;
+  HeightSums sums;
   for (std::size_t i = 0; i < points.size (); ++i)
-  {
-    if (!(weights[i] > 0.0f))
-      continue;
-    const Eigen::Vector3d p = (frame_ * (points[i] - center_)).cast<double> () / spacing;
-    const Terms terms = termsAt (p.x (), p.y ());
-    moments.selfadjointView<Eigen::Lower> ().rankUpdate (terms, weights[i]);
-    sums += weights[i] * p.z () * terms;
-    squares += weights[i] * p.z () * p.z ();
-    used += 1.0;
-  }
+    if (weights[i] > 0.0f)
+      sums.add ((frame_ * (points[i] - center_)).cast<double> () / spacing, static_cast<double> (weights[i]));
+  Eigen::Matrix<double, 6, 6> moments = sums.moments (); // lengths in spacings
   const double total = moments (0, 0);
   moments.diagonal ().head<3> ().array () += 1e-9 * total;
   moments.diagonal ().tail<3> ().array () += ridge;
   const int count = curved ? 6 : 3;
   Terms heights = Terms::Zero ();
-  heights.head (count) =
-      moments.topLeftCorner (count, count).selfadjointView<Eigen::Lower> ().ldlt ().solve (sums.head (count));
-  const double left = squares - heights.dot (sums) - ridge * heights.tail<3> ().squaredNorm ();
-  const double freedom = std::max (0.5, used - count) * total / std::max (1.0, used);
+  heights.head (count) = moments.topLeftCorner (count, count)
+                             .selfadjointView<Eigen::Lower> ()
+                             .ldlt ()
+                             .solve (sums.of_heights.head (count));
+  const double left = sums.squares - heights.dot (sums.of_heights) - ridge * heights.tail<3> ().squaredNorm ();
+  const double freedom = std::max (0.5, sums.used - count) * total / std::max (1.0, sums.used);
   deviation_ = static_cast<float> (spacing * std::sqrt (std::max (0.0, left / freedom)));
   weight_ = static_cast<float> (total);
   heights[0] *= spacing;

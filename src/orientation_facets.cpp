@@ -111,30 +111,28 @@ private:
 
   /** \brief Sum over the neighbours of how nearly they lie on a plane through the first of them. */
   float
-  fullness (const FacetNeighborhood &near, const Eigen::Vector3f &normal) const
+  fullness (const FacetNeighborhood::Ways &ways, const Eigen::Vector3f &normal) const
   {
     const auto per_square = static_cast<float> (0.25 / (tolerance_ * tolerance_));
-    const float first = normal.dot (near.positions.front ());
-    float sum = 0.0f;
-    for (const Eigen::Vector3f &p : near.positions)
-    {
-      const float height = normal.dot (p) - first;
-      sum += 1.0f / (1.0f + per_square * height * height);
-    }
-    return sum;
+    const auto heights = normal[0] * ways.col (0) + normal[1] * ways.col (1) + normal[2] * ways.col (2);
+    return (1.0f + per_square * heights.square ()).inverse ().sum ();
   }
 
   /** \brief Normal of the plane through the first neighbour and two others that most of them lie on. */
   Eigen::Vector3f
-  fullestPlane (const FacetNeighborhood &near, const Eigen::Vector3f &estimated) const
+  fullestPlane (FacetNeighborhood &near, const Eigen::Vector3f &estimated) const
   {
     constexpr float BETTER = 1.1f; // than the plane that was estimated from all
+    FacetNeighborhood::Ways &ways = near.ways;
+    ways.resize (static_cast<Eigen::Index> (near.positions.size ()), 3);
+    for (std::size_t j = 0; j < near.positions.size (); ++j)
+      ways.row (static_cast<Eigen::Index> (j)) = (near.positions[j] - near.positions.front ()).transpose ().array ();
     Eigen::Vector3f best = estimated;
-    float most = BETTER * fullness (near, estimated);
+    float most = BETTER * fullness (ways, estimated);
     visitPlanes (near, spacing_,
                  [&] (const Eigen::Vector3f &normal)
                  {
-                   const float sum = fullness (near, normal);
+                   const float sum = fullness (ways, normal);
                    if (sum > most)
                      best = normal;
                    most = std::max (most, sum);
@@ -172,8 +170,9 @@ private:
         continue;
       const double deviation = atLeastTolerance (fit.deviation ()), distance = atLeastTolerance (fit.distance (x));
       const double reach = (x - fit.center ()).squaredNorm () / (spacing_ * spacing_);
-      const double misfit = (deviation * deviation + distance * distance) * (1.0 + 0.05 * reach) *
-                            (1.0 + std::pow (10.0 / fit.weight (), 3));
+      const double few = 10.0 / fit.weight ();
+      const double misfit =
+          (deviation * deviation + distance * distance) * (1.0 + 0.05 * reach) * (1.0 + few * few * few);
       if (misfit < least)
         best = &fit;
       least = std::min (least, misfit);

@@ -19,6 +19,10 @@ namespace erkpa
 /** \brief The point itself is the first of them. */
 struct FacetNeighborhood : Neighborhood
 {
+  using Ways = Eigen::Array<float, Eigen::Dynamic, 3>;
+
+  Ways ways; ///< scratch memory: from the point to its neighbours
+
   /** \brief The \a k nearest nodes of node \a i, all of weight 1. */
   void
   gather (const OrientedPoints &points, const NeighborSearch &search, std::size_t i, int k);
