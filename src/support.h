@@ -248,4 +248,32 @@ private:
   Eigen::Vector3d growth_ = Eigen::Vector3d::Zero ();
 };
 
+template <typename ChooseT>
+void
+Support::listSlots (ChooseT choose, std::vector<int> &slots) const
+{
+  slots.resize (squared_.size ());
+  std::size_t kept = 0;
+  for (std::size_t i = 0; i < squared_.size (); ++i)
+  {
+    slots[kept] = static_cast<int> (i);
+    kept += choose (i) ? 1 : 0; // no branch, which none could foretell
+  }
+  slots.resize (kept);
+}
+
+template <typename ChooseT>
+void
+Support::listDistances (ChooseT choose)
+{
+  scratch_.resize (squared_.size ());
+  std::size_t kept = 0;
+  for (std::size_t i = 0; i < squared_.size (); ++i)
+  {
+    scratch_[kept] = squared_[i];
+    kept += both (choose (i), isOnSurface (i)) ? 1 : 0;
+  }
+  scratch_.resize (kept);
+}
+
 } // namespace erkpa

@@ -21,6 +21,13 @@ namespace
 
 constexpr std::size_t MAX_ACTIVE_CELLS = 100000000; // some 100 GB of grid and mesh
 
+/** \brief Number of a cell's face: that of the lower or of the higher coordinate along an axis. */
+std::size_t
+faceOf (int axis, int side)
+{
+  return 2 * static_cast<std::size_t> (axis) + static_cast<std::size_t> (side);
+}
+
 } // namespace
 
 SurfaceTracker::SurfaceTracker (const ImplicitField &field, const PolygonizerOptions &options, SparseGrid &grid,
@@ -145,10 +152,10 @@ SurfaceTracker::classifyFront ()
   for (std::size_t i = 0; i < front_.size (); ++i)
   {
     const GridBlock &block = grid_.block (front_[i]);
-    active_count_ += static_cast<std::size_t> (__builtin_popcountll (block.active & block.fresh));
+    active_count_ += static_cast<unsigned> (__builtin_popcountll (block.active & block.fresh));
     for (int axis = 0; axis < 3; ++axis)
       for (const int side : {0, 1})
-        handOn (front_[i], passed[i][static_cast<std::size_t> (2 * axis + side)], axis, side == 1);
+        handOn (front_[i], passed[i][faceOf (axis, side)], axis, side == 1);
   }
 }
 
@@ -192,7 +199,7 @@ SurfaceTracker::classify (int index)
           any |= inside[static_cast<std::size_t> (corner)];
           every &= inside[static_cast<std::size_t> (corner)];
         }
-      passed[static_cast<std::size_t> (2 * axis + side)] = crossed & any & ~every;
+      passed[faceOf (axis, side)] = crossed & any & ~every;
     }
   return passed;
 }
@@ -309,6 +316,7 @@ SurfaceTracker::seedFromProjections ()
             missing.push_back (order[i]);
       });
   std::vector<Eigen::Vector3d> feet;
+  feet.reserve (away.size ());
   for (const std::uint32_t i : away)
     feet.push_back (positions[i].cast<double> ());
   const std::vector<char> has_foot = findFeet (field_, options_, grid_.voxelSize (), feet, report_);

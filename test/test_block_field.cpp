@@ -2,6 +2,7 @@
 #include "field_tests.h"
 
 #include "block_field.h"
+#include "face_tree.h"
 #include "face_vote.h"
 #include "local_field.h"
 #include "support.h"
@@ -9,6 +10,7 @@
 #include <erkpa/sharp_detection.h>
 
 #include <algorithm>
+#include <array>
 
 namespace
 {
@@ -336,3 +338,67 @@ TEST (FaceVote, AFaceHasNoSayFartherOutThanItsNodesReach)
 }
 
 } // namespace
+
+TEST (LaneSearch, FindsThePointsWithinADistanceWithEveryInstructionSet)
+{
+  constexpr std::size_t COUNT = 1000;
+  std::array<std::vector<float>, 3> x;
+  for (std::vector<float> &coordinates : x)
+    for (std::size_t i = 0; i < COUNT; ++i)
+      coordinates.push_back (static_cast<float> (randomPoint (1.0)[0]));
+  const std::vector<erkpa::lanes::Stretch> stretches{{3, 4}, {10, 27}, {32, 32}, {64, 96}, {100, 999}};
+  const std::array<float, 3> center{0.1f, -0.2f, 0.3f};
+  std::size_t engines = 0;
+  const erkpa::lanes::Engine *const *engine = erkpa::lanes::engines (engines);
+  for (std::size_t e = 0; e < engines; ++e)
+    for (const float limit : {0.0f, 0.2f, 0.7f, 100.0f})
+    {
+      std::vector<std::uint32_t> places (COUNT + erkpa::lanes::MAX_WIDTH), expected;
+      std::vector<float> squared (places.size ());
+      const erkpa::lanes::Found found{places.data (), squared.data ()};
+      const std::size_t kept =
+          engine[e]->search->findWithin ({x[0].data (), x[1].data (), x[2].data ()}, stretches.data (),
+                                         stretches.size (), center.data (), limit, found);
+      for (const erkpa::lanes::Stretch &stretch : stretches)
+        for (std::uint32_t i = stretch.first; i < stretch.last; ++i)
+        {
+          const Vector3d way (x[0][i] - center[0], x[1][i] - center[1], x[2][i] - center[2]);
+          if (way.squaredNorm () <= static_cast<double> (limit))
+            expected.push_back (i);
+        }
+      EXPECT_EQ (std::vector<std::uint32_t> (places.begin (), places.begin () + static_cast<long> (kept)), expected)
+          << engine[e]->name << " within " << limit;
+      const std::size_t within = engine[e]->search->countWithin (squared.data (), kept, 0.5f * limit);
+      EXPECT_EQ (engine[e]->search->keepWithin (found, kept, 0.5f * limit), within) << engine[e]->name;
+      EXPECT_TRUE (std::all_of (squared.begin (), squared.begin () + static_cast<long> (within),
+                                [&] (float s) { return s <= 0.5f * limit; }));
+    }
+}
+
+TEST (FaceTree, SaysEveryWayToNestMaximaAndMinimaOnce)
+{
+  // As many as there are series-parallel networks of so many labelled resistors.
+  const std::array<std::size_t, 4> expected{1, 2, 8, 52};
+  for (int faces = 1; faces <= erkpa::FaceTree::MAX_FACES; ++faces)
+    EXPECT_EQ (erkpa::treesOf (faces).size (), expected[static_cast<std::size_t> (faces) - 1]);
+}
+
+TEST (FaceTree, TakesTheValueThatItsStepsSay)
+{
+  for (const erkpa::FaceTree &tree : erkpa::treesOf (4))
+    for (int time = 0; time < 100; ++time)
+    {
+      std::array<double, 4> values{};
+      for (double &value : values)
+        value = randomPoint (1.0)[0];
+      std::array<double, 4> left = values;
+      std::size_t last = 0;
+      for (const erkpa::FaceTree::Step &step : tree.steps)
+      {
+        last = static_cast<std::size_t> (step.face);
+        const double other = left[static_cast<std::size_t> (step.other)];
+        left[last] = step.larger ? std::max (left[last], other) : std::min (left[last], other);
+      }
+      EXPECT_EQ (values[static_cast<std::size_t> (tree.winner (values.data ()))], left[last]);
+    }
+}

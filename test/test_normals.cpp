@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include "orientation_graph.h"
 #include "shapes.h"
 
 #include <erkpa/normals.h>
@@ -221,4 +222,25 @@ TEST (Normals, ThatWereGivenStayAndGiveTheOthersTheirSign)
   for (std::size_t i = 0; i < points.size (); i += 10)
     EXPECT_EQ (points.normals[i], before[i]);
   EXPECT_EQ (shareThatAgrees (points, sphere.normals), 0.0); // all inwards, as those that were given
+}
+
+TEST (Signs, FollowSureLinksButNotThoseThatOthersContradict)
+{
+  // A strip of nodes that are sure of each other, and one link, the surest, that says the contrary of all around it.
+  constexpr int COUNT = 40;
+  std::vector<erkpa::SignedLink> links;
+  for (int i = 0; i < COUNT; ++i)
+    for (int j = std::max (0, i - 3); j <= std::min (COUNT - 1, i + 3); ++j)
+      if (i != j)
+      {
+        const float same = i % 2 == j % 2 ? 1.0f : -1.0f; // every other node is turned
+        const bool is_wrong = std::min (i, j) == 20 && std::max (i, j) == 21;
+        links.push_back ({i, j, is_wrong ? -0.95f * same : 0.7f * same});
+      }
+  const std::size_t between_neighbors = links.size ();
+  links.push_back ({5, COUNT, 0.1f}); // the outside is no neighbour
+  const std::vector<char> flips = erkpa::agreeOnSigns (COUNT + 1, links, between_neighbors, 2);
+  for (int i = 1; i < COUNT; ++i)
+    EXPECT_NE (flips[static_cast<std::size_t> (i)], flips[static_cast<std::size_t> (i) - 1]) << i;
+  EXPECT_EQ (flips[5], flips[COUNT]);
 }

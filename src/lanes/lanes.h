@@ -139,7 +139,8 @@ struct Samples
   float *attributes; ///< channel after channel
 };
 
-/** \brief Memory for one call: MAX_WIDTH more places than there are nodes, and rows of MAX_WIDTH floats for distances. */
+/** \brief Memory for one call: MAX_WIDTH more places than there are nodes, and rows of MAX_WIDTH floats for distances.
+ */
 struct Scratch
 {
   std::uint32_t *list;
