@@ -82,6 +82,7 @@ TEST (Threads, OfSeveralCallersDoNotMeet)
 {
   std::atomic<int> failures{0};
   std::vector<std::thread> callers;
+  callers.reserve (4);
   for (int caller = 0; caller < 4; ++caller)
     callers.emplace_back (
         [&]
