@@ -50,7 +50,7 @@ public:
     constexpr int ROUNDS = 2;
     for (int round = 0; round < ROUNDS; ++round)
     {
-      forEachPoint ([this] (Neighborhood &near, std::size_t i) { refine (near, i, true); });
+      forEachPoint ([this] (Neighborhood &near, std::size_t i) { refineByNormals (near, i); });
       takeNormals ();
     }
     return normals_;
@@ -225,14 +225,21 @@ private:
     refine (near, i, false);
   }
 
+  /** \brief The same once more, by what the normals have become. */
+  void
+  refineByNormals (Neighborhood &near, std::size_t i)
+  {
+    if (smooth_[i])
+      return;
+    gather (near, i, k_ + k_ / 2);
+    refine (near, i, true);
+  }
+
   /** \brief Fits the chosen surface again, to the neighbours on it. */
   void
   refine (Neighborhood &near, std::size_t i, bool by_normals)
   {
     constexpr int TURNS = 2;
-    if (smooth_[i])
-      return;
-    gather (near, i, k_ + k_ / 2);
     const Eigen::Vector3f &x = points_.positions[i];
     for (int turn = 0; turn < TURNS; ++turn)
     {

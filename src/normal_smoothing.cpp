@@ -200,19 +200,25 @@ double
 HeightFit::distance (const Eigen::Vector3f &x) const
 {
   const Eigen::Vector3f p = frame_ * (x - center_);
-  const Eigen::Vector3f &c = heights_.tail<3> ();
-  const float height = heights_[0] + heights_[1] * p.x () + heights_[2] * p.y () + c[0] * p.x () * p.x () +
-                       c[1] * p.x () * p.y () + c[2] * p.y () * p.y ();
-  return (p.z () - height) * normal (x).dot (frame_.row (2).transpose ());
+  const float height = heights_[0] + heights_[1] * p.x () + heights_[2] * p.y () + heights_[3] * p.x () * p.x () +
+                       heights_[4] * p.x () * p.y () + heights_[5] * p.y () * p.y ();
+  const Eigen::Vector2f slope = slopeAt (p);
+  return (p.z () - height) / std::sqrt (1.0f + slope.squaredNorm ());
 }
 
 Eigen::Vector3f
 HeightFit::normal (const Eigen::Vector3f &x) const
 {
   const Eigen::Vector3f p = frame_ * (x - center_);
-  const float slope_x = heights_[1] + 2.0f * heights_[3] * p.x () + heights_[4] * p.y ();
-  const float slope_y = heights_[2] + heights_[4] * p.x () + 2.0f * heights_[5] * p.y ();
-  return frame_.transpose () * Eigen::Vector3f (-slope_x, -slope_y, 1.0f).normalized ();
+  const Eigen::Vector2f slope = slopeAt (p);
+  return frame_.transpose () * Eigen::Vector3f (-slope.x (), -slope.y (), 1.0f).normalized ();
+}
+
+Eigen::Vector2f
+HeightFit::slopeAt (const Eigen::Vector3f &p) const
+{
+  return {heights_[1] + 2.0f * heights_[3] * p.x () + heights_[4] * p.y (),
+          heights_[2] + heights_[4] * p.x () + 2.0f * heights_[5] * p.y ()};
 }
 
 void

@@ -59,6 +59,10 @@ public:
   }
 
 private:
+  /** \brief The slopes of the height along x and y of the plane, at a point in its frame. */
+  Eigen::Vector2f
+  slopeAt (const Eigen::Vector3f &p) const;
+
   void
   setFrame (const std::vector<Eigen::Vector3f> &points, const std::vector<float> &weights, const Eigen::Vector3f &side);
 
