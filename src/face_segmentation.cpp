@@ -181,6 +181,18 @@ private:
   std::set<std::pair<int, int>> refused_;
 };
 
+Eigen::Vector3d
+positionOf (const OrientedPoints &points, int node)
+{
+  return points.positions[static_cast<std::size_t> (node)].cast<double> ();
+}
+
+Eigen::Vector3d
+normalOf (const OrientedPoints &points, int node)
+{
+  return points.normals[static_cast<std::size_t> (node)].cast<double> ();
+}
+
 /** \brief Where the tangent planes of two nodes meet, nearest to the middle between them. */
 Separation
 separationOf (const OrientedPoints &points, int i, int j)

@@ -12,18 +12,6 @@
 namespace erkpa
 {
 
-inline Eigen::Vector3d
-positionOf (const OrientedPoints &points, int node)
-{
-  return points.positions[static_cast<std::size_t> (node)].cast<double> ();
-}
-
-inline Eigen::Vector3d
-normalOf (const OrientedPoints &points, int node)
-{
-  return points.normals[static_cast<std::size_t> (node)].cast<double> ();
-}
-
 /** \brief Tells what fits to one smooth surface. In floats and squares: it is asked for every pair of neighbours. */
 class SmoothnessTest
 {
