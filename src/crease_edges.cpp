@@ -2,13 +2,13 @@
 #include "crease_edges.h"
 
 #include "crease_geometry.h"
+#include "crease_links.h"
 #include "mesh_intersections.h"
 #include "threads.h"
 
 #include <Eigen/Geometry>
 
 #include <algorithm>
-#include <map>
 #include <set>
 #include <utility>
 
@@ -27,8 +27,7 @@ public:
   CreaseBuilder (double voxel, const std::vector<CellLoop> &loops, const std::vector<MeshedLoop> &meshed, int threads,
                  std::vector<Triangle> &triangles, SurfaceVertices &vertices)
       : voxel_ (voxel), threads_ (threads), loops_ (loops), meshed_ (meshed), triangles_ (triangles),
-        vertices_ (vertices), before_loops_ (triangles.size ()), centers_ (loops.size (), -1),
-        on_crease_ (loops.size (), 0)
+        vertices_ (vertices), before_loops_ (triangles.size ()), links_ (loops.size ())
   {
   }
 
@@ -37,13 +36,8 @@ public:
   {
     for (std::size_t i = 0; i < loops_.size (); ++i)
       if (meshed_[i].has_center)
-      {
-        on_crease_[i] = 1;
-        centers_[i] = appendVertex (meshed_[i]);
-        for (const VertexPair &pair : meshed_[i].crossings)
-          crossings_[pair].push_back (static_cast<int> (i));
-      }
-    pairLoops ();
+        links_.add (i, appendVertex (meshed_[i]), meshed_[i].crossings);
+    links_.join ();
     sortVertices ();
     do
     {
@@ -52,7 +46,7 @@ public:
       meshLoops ();
     } while (untangle ());
     makeMiddles ();
-    return {creases_.begin (), creases_.end ()};
+    return {links_.edges ().begin (), links_.edges ().end ()};
   }
 
 private:
@@ -69,28 +63,6 @@ private:
     return center;
   }
 
-  /** \brief Find for each crossing the two loops whose vertices the crease joins; each two are joined once. */
-  void
-  pairLoops ()
-  {
-    joined_.clear ();
-    creases_.clear ();
-    for (const auto &[pair, of] : crossings_)
-      if (of.size () == 2 && on_crease_[static_cast<std::size_t> (of[0])] &&
-          on_crease_[static_cast<std::size_t> (of[1])])
-      {
-        const VertexPair edge = orderedPair (center (of[0]), center (of[1]));
-        if (edge.first != edge.second && creases_.insert (edge).second)
-          joined_[pair] = {of[0], of[1]};
-      }
-  }
-
-  int
-  center (int loop) const
-  {
-    return centers_[static_cast<std::size_t> (loop)];
-  }
-
   /** \brief Exchanges neighbours whose vertices stand along their crease the other way round than their loops do. */
   void
   sortVertices ()
@@ -100,11 +72,11 @@ private:
     for (int round = 0; round < ROUNDS && changed; ++round)
     {
       changed = false;
-      for (const auto &[pair, of] : joined_)
+      for (const auto &[pair, of] : links_.joined ())
         if (isAlong (of.first) && isAlong (of.second) && isReversed (pair, of.first))
         {
-          const auto one = static_cast<std::size_t> (center (of.first));
-          const auto other = static_cast<std::size_t> (center (of.second));
+          const auto one = static_cast<std::size_t> (links_.center (of.first));
+          const auto other = static_cast<std::size_t> (links_.center (of.second));
           std::swap (vertices_.positions[one], vertices_.positions[other]);
           std::swap (vertices_.normals[one], vertices_.normals[other]);
           changed = true;
@@ -114,32 +86,21 @@ private:
 
   /** \brief Whether a single crease runs through a loop, so that its vertex may stand anywhere along it. */
   bool
-  isAlong (int loop) const
+  isAlong (std::size_t loop) const
   {
-    return meshed_[static_cast<std::size_t> (loop)].crossings.size () == 2;
+    return meshed_[loop].crossings.size () == 2;
   }
 
   /** \brief Whether both triangles at the crease edge through the side \a pair of a loop look away. */
   bool
-  isReversed (const VertexPair &pair, int loop) const
+  isReversed (const VertexPair &pair, std::size_t loop) const
   {
-    const std::vector<int> &ring = loops_[static_cast<std::size_t> (loop)].ring;
+    const std::vector<int> &ring = loops_[loop].ring;
     const auto first = std::find (ring.begin (), ring.end (), pair.first) - ring.begin ();
     const bool is_forward = ring[static_cast<std::size_t> (first + 1) % ring.size ()] == pair.second;
     const auto [a, b] = is_forward ? pair : VertexPair (pair.second, pair.first);
-    const int c = center (loop), d = nextOnCrease (static_cast<std::size_t> (loop), a, b);
+    const int c = links_.center (loop), d = links_.next (loop, a, b);
     return looksAway (a, d, c, normal (a)) && looksAway (b, c, d, normal (b));
-  }
-
-  /** \brief The vertex that the crease through the side a, b of a loop goes on to; -1 where none runs through it. */
-  int
-  nextOnCrease (std::size_t loop, int a, int b) const
-  {
-    const auto found = joined_.find (orderedPair (a, b));
-    if (found == joined_.end ())
-      return -1;
-    const auto &[one, other] = found->second;
-    return static_cast<int> (loop) == one ? center (other) : center (one);
   }
 
   bool
@@ -158,11 +119,11 @@ private:
   isFolded (std::size_t loop) const
   {
     const std::vector<int> &ring = loops_[loop].ring;
-    const int c = centers_[loop];
+    const int c = links_.center (loop);
     for (std::size_t i = 0; i < ring.size (); ++i)
     {
       const int a = ring[i], b = ring[(i + 1) % ring.size ()];
-      const int d = nextOnCrease (loop, a, b);
+      const int d = links_.next (loop, a, b);
       const bool folded = d < 0 ? looksAway (a, b, c, normal (a) + normal (b))
                                 : looksAway (a, d, c, normal (a)) || looksAway (b, c, d, normal (b));
       if (folded)
@@ -176,11 +137,11 @@ private:
   dropFolded ()
   {
     bool changed = false;
-    pairLoops ();
+    links_.join ();
     for (std::size_t i = 0; i < loops_.size (); ++i)
-      if (on_crease_[i] && isFolded (i))
+      if (links_.has (i) && isFolded (i))
       {
-        on_crease_[i] = 0;
+        links_.giveUp (i);
         changed = true;
       }
     return changed;
@@ -206,7 +167,7 @@ private:
       if (std::any_of (first.begin (), first.end (), is_touched) ||
           std::any_of (second.begin (), second.end (), is_touched))
         continue;
-      if (!giveUpCrease (owner_of (t), owner_of (u)) && !putBackFarthest (first, second))
+      if (!giveUpCrease (owner_of (t), owner_of (u)) && !putBackFarthest (first, second, vertices_))
         continue;
       touched.insert (first.begin (), first.end ());
       touched.insert (second.begin (), second.end ());
@@ -222,8 +183,8 @@ private:
     for (std::size_t v = 0; v < vertices_.found.size (); ++v)
       is_outside[v] = vertices_.found[v] != vertices_.positions[v] ? 1 : 0;
     for (std::size_t i = 0; i < loops_.size (); ++i)
-      if (on_crease_[i] && !isInsideCell (centers_[i], loops_[i], voxel_, vertices_))
-        is_outside[static_cast<std::size_t> (centers_[i])] = 1;
+      if (links_.has (i) && !isInsideCell (links_.center (i), loops_[i], voxel_, vertices_))
+        is_outside[static_cast<std::size_t> (links_.center (i))] = 1;
     std::vector<int> suspects;
     for (std::size_t t = vertices_.found.empty () ? before_loops_ : 0; t < triangles_.size (); ++t)
       if (std::any_of (triangles_[t].begin (), triangles_[t].end (),
@@ -250,7 +211,7 @@ private:
           for (std::size_t i = p * STRETCH; i < std::min (loops_.size (), (p + 1) * STRETCH); ++i)
           {
             const std::size_t before = parts[p].size ();
-            if (on_crease_[i])
+            if (links_.has (i))
               addCreaseFan (i, parts[p]);
             else
               triangulateCell (loops_[i], vertices_, parts[p]);
@@ -261,7 +222,7 @@ private:
       triangles_.insert (triangles_.end (), part.begin (), part.end ());
     for (std::size_t i = 0; i < loops_.size (); ++i)
     {
-      owners_.resize (owners_.size () + counts[i], on_crease_[i] ? static_cast<int> (i) : -1);
+      owners_.resize (owners_.size () + counts[i], links_.has (i) ? static_cast<int> (i) : -1);
       if (counts[i] == 0)
         with_middle_.push_back (i);
     }
@@ -273,44 +234,16 @@ private:
     owners_.resize (triangles_.size () - before_loops_, -1);
   }
 
-  /** \brief Whether a vertex of a thin wall was moved from the edge of the grid it was found on. */
-  bool
-  isMoved (int v) const
-  {
-    const auto vertex = static_cast<std::size_t> (v);
-    return vertex < vertices_.found.size () && vertices_.found[vertex] != vertices_.positions[vertex];
-  }
-
-  /** \brief Of the vertices of two triangles, takes the one that was moved farthest to where it was found. */
-  bool
-  putBackFarthest (const Triangle &one, const Triangle &other)
-  {
-    int farthest = -1;
-    double most = 0.0;
-    for (const Triangle &triangle : {one, other})
-      for (const int v : triangle)
-      {
-        const auto vertex = static_cast<std::size_t> (v);
-        const double way = isMoved (v) ? (vertices_.found[vertex] - vertices_.positions[vertex]).norm () : 0.0;
-        if (way > most)
-          farthest = v;
-        most = std::max (most, way);
-      }
-    if (farthest >= 0)
-      vertices_.positions[static_cast<std::size_t> (farthest)] = vertices_.found[static_cast<std::size_t> (farthest)];
-    return farthest >= 0;
-  }
-
   /** \brief Of two loops (< 0: none), the one whose crease vertex lies farther off loses it; false where one has
    * already, or there is none. */
   bool
   giveUpCrease (int one, int other)
   {
-    const auto is_given_up = [this] (int loop) { return loop >= 0 && !on_crease_[static_cast<std::size_t> (loop)]; };
+    const auto is_given_up = [this] (int loop) { return loop >= 0 && !links_.has (static_cast<std::size_t> (loop)); };
     if (is_given_up (one) || is_given_up (other) || std::max (one, other) < 0)
       return false;
     const bool is_first = other < 0 || (one >= 0 && offsetOf (one) > offsetOf (other));
-    on_crease_[static_cast<std::size_t> (is_first ? one : other)] = 0;
+    links_.giveUp (static_cast<std::size_t> (is_first ? one : other));
     return true;
   }
 
@@ -318,19 +251,20 @@ private:
   double
   offsetOf (int loop) const
   {
-    const Eigen::Vector3d middle = middleOf (loops_[static_cast<std::size_t> (loop)].ring);
-    return (vertices_.positions[static_cast<std::size_t> (center (loop))] - middle).norm ();
+    const auto place = static_cast<std::size_t> (loop);
+    const Eigen::Vector3d &position = vertices_.positions[static_cast<std::size_t> (links_.center (place))];
+    return (position - middleOf (loops_[place].ring)).norm ();
   }
 
   void
   addCreaseFan (std::size_t loop, std::vector<Triangle> &triangles) const
   {
     const std::vector<int> &ring = loops_[loop].ring;
-    const int c = centers_[loop];
+    const int c = links_.center (loop);
     for (std::size_t i = 0; i < ring.size (); ++i)
     {
       const int a = ring[i], b = ring[(i + 1) % ring.size ()];
-      const int d = nextOnCrease (loop, a, b);
+      const int d = links_.next (loop, a, b);
       if (d < 0)
         triangles.push_back ({a, b, c});
       else // the other loop sees b, a and adds the other half
@@ -384,11 +318,7 @@ private:
   const std::size_t before_loops_; // triangles
   std::vector<int> owners_;        // per triangle of loops the one whose crease vertex it has; -1 for none
   std::vector<std::size_t> with_middle_;
-  std::vector<int> centers_;
-  std::vector<char> on_crease_;
-  std::map<VertexPair, std::vector<int>> crossings_; // the loops that a crossing is of
-  std::map<VertexPair, std::pair<int, int>> joined_; // the loops that it joins
-  std::set<VertexPair> creases_;
+  CreaseLinks links_;
 };
 
 } // namespace

@@ -44,4 +44,24 @@ isInsideCell (int vertex, const CellLoop &loop, double voxel, const SurfaceVerti
   return true;
 }
 
+bool
+putBackFarthest (const std::array<int, 3> &one, const std::array<int, 3> &other, SurfaceVertices &vertices)
+{
+  std::size_t farthest = 0;
+  double most = 0.0;
+  for (const std::array<int, 3> &triangle : {one, other})
+    for (const int v : triangle)
+    {
+      const auto vertex = static_cast<std::size_t> (v);
+      const bool is_on_grid = vertex < vertices.found.size ();
+      const double way = is_on_grid ? (vertices.found[vertex] - vertices.positions[vertex]).norm () : 0.0;
+      if (way > most)
+        farthest = vertex;
+      most = std::max (most, way);
+    }
+  if (most > 0.0)
+    vertices.positions[farthest] = vertices.found[farthest];
+  return most > 0.0;
+}
+
 } // namespace erkpa

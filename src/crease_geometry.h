@@ -21,4 +21,9 @@ looksAway (const std::array<int, 3> &triangle, const Eigen::Vector3d &normal, co
 bool
 isInsideCell (int vertex, const CellLoop &loop, double voxel, const SurfaceVertices &vertices);
 
+/** \brief Of the vertices of two triangles, take the one that was moved farthest from the edge of the grid it was found
+ * on back there; false where none was moved. */
+bool
+putBackFarthest (const std::array<int, 3> &one, const std::array<int, 3> &other, SurfaceVertices &vertices);
+
 } // namespace erkpa
