@@ -3,6 +3,7 @@
 
 #include <Eigen/Geometry>
 
+#include <algorithm>
 #include <cmath>
 #include <cstdint>
 
@@ -40,10 +41,10 @@ BlockEvaluator::evaluate (GridField &worker, const int *first_block, const int *
     for (const int *index = first_block; index != last_block; ++index)
     {
       GridBlock &block = grid_.block (*index);
-      for (std::uint64_t left = block.needed & part.nodes; left != 0; left &= left - 1)
-        worker.wanted.push_back ({&block, __builtin_ctzll (left)});
+      listNodes (block, block.needed & part.nodes, worker.wanted);
     }
-    evaluateWanted (worker);
+    if (!worker.wanted.empty ())
+      evaluateWanted (worker, first_block, last_block);
   }
   for (const int *index = first_block; index != last_block; ++index)
     grid_.block (*index).needed = 0;
@@ -51,35 +52,96 @@ BlockEvaluator::evaluate (GridField &worker, const int *first_block, const int *
 
 /** \brief Evaluate the nodes that are wanted, from one ball around them. */
 void
-BlockEvaluator::evaluateWanted (GridField &worker) const
+BlockEvaluator::evaluateWanted (GridField &worker, const int *first_block, const int *last_block) const
 {
-  if (worker.wanted.empty ())
-    return;
+  const bool foresees = foresees_ && parts_.size () == 1 && grid_.block (*first_block).known == 0;
   Eigen::AlignedBox3i box;
+  const auto extend = [&box] (const GridPoint &point) { box.extend (Eigen::Vector3i (point.x, point.y, point.z)); };
   for (const WantedNode &node : worker.wanted)
+    extend (SparseGrid::pointAt (*node.block, node.node));
+  for (const int *index = first_block; index != (foresees ? last_block : first_block); ++index)
   {
-    const GridPoint point = SparseGrid::pointAt (*node.block, node.node);
-    box.extend (Eigen::Vector3i (point.x, point.y, point.z));
+    constexpr int LAST = GridBlock::SIDE - 1;
+    extend (grid_.block (*index).first);
+    extend (grid_.block (*index).first + GridPoint{LAST, LAST, LAST});
   }
   const double voxel = grid_.voxelSize ();
   const Eigen::Vector3d center = grid_.position ({0, 0, 0}) + 0.5 * voxel * (box.min () + box.max ()).cast<double> ();
   const double extent = 0.5 * voxel * (box.max () - box.min ()).cast<double> ().norm ();
-  if (worker.block.gather (center, extent))
+  worker.left.clear ();
+  if (!worker.block.gather (center, extent))
+    worker.left.swap (worker.wanted);
+  else if (foresees)
+    evaluateForeseen (worker, first_block, last_block, center);
+  else
     evaluateTogether (worker);
-  if (worker.wanted.empty ())
+  if (worker.left.empty ())
     return;
   worker.local.gather (center, extent);
-  for (const WantedNode &node : worker.wanted)
+  for (const WantedNode &node : worker.left)
     evaluateAlone (worker.local, node);
 }
 
-/** \brief Evaluate what can be in lanes; the nodes that want LocalField are left. */
+void
+BlockEvaluator::evaluateForeseen (GridField &worker, const int *first_block, const int *last_block,
+                                  const Eigen::Vector3d &center) const
+{
+  BlockField &field = worker.block;
+  const bool has_center = field.canEvaluateAt (center);
+  if (has_center)
+    field.addPoint (center);
+  evaluateTogether (worker);
+  FieldSketch sketch;
+  if (!has_center || !field.sketch (0, sketch))
+    return;
+  worker.wanted.clear ();
+  for (const int *index = first_block; index != last_block; ++index)
+  {
+    GridBlock &block = grid_.block (*index);
+    listNodes (block, nodesNear (block, sketch) & ~(block.known | block.needed), worker.wanted);
+  }
+  field.clearPoints ();
+  evaluateTogether (worker);
+}
+
+std::uint64_t
+BlockEvaluator::nodesNear (const GridBlock &block, const FieldSketch &sketch) const
+{
+  constexpr int SIDE = GridBlock::SIDE;
+  const double voxel = grid_.voxelSize ();
+  const Eigen::Vector3d first = grid_.position (block.first);
+  double values[3][SIDE], steps[3][SIDE]; // along each axis: what is added to the value, and by a cell
+  for (int axis = 0; axis < 3; ++axis)
+    for (int i = 0; i < SIDE; ++i)
+    {
+      values[axis][i] = sketch.along (axis, first[axis] + i * voxel);
+      steps[axis][i] = std::abs (sketch.slopeAlong (axis, first[axis] + i * voxel)) * voxel;
+    }
+  std::uint64_t near = 0;
+  for (int node = 0; node < GridBlock::NODES; ++node)
+  {
+    const int x = node % SIDE, y = node / SIDE % SIDE, z = node / (SIDE * SIDE);
+    const double value = sketch.value - options_.iso_level + values[0][x] + values[1][y] + values[2][z];
+    const bool is_near = std::abs (value) <= steps[0][x] + steps[1][y] + steps[2][z];
+    near |= static_cast<std::uint64_t> (is_near) << node;
+  }
+  return near;
+}
+
+void
+BlockEvaluator::listNodes (GridBlock &block, std::uint64_t nodes, std::vector<WantedNode> &list)
+{
+  for (; nodes != 0; nodes &= nodes - 1)
+    list.push_back ({&block, __builtin_ctzll (nodes)});
+}
+
+/** \brief After the points that are there. */
 void
 BlockEvaluator::evaluateTogether (GridField &worker) const
 {
   BlockField &field = worker.block;
-  std::vector<WantedNode> &wanted = worker.wanted, &left = worker.left;
-  left.clear ();
+  std::vector<WantedNode> &wanted = worker.wanted;
+  const std::size_t before = field.size ();
   std::size_t taken = 0;
   for (const WantedNode node : wanted)
   {
@@ -90,16 +152,15 @@ BlockEvaluator::evaluateTogether (GridField &worker) const
       field.addPoint (position);
     }
     else
-      left.push_back (node);
+      worker.left.push_back (node);
   }
   field.evaluate (false);
   for (std::size_t i = 0; i < taken; ++i)
-    if (field.isUnsettled (i))
-      left.push_back (wanted[i]);
+    if (const std::size_t point = before + i; field.isUnsettled (point))
+      worker.left.push_back (wanted[i]);
     else
-      wanted[i].block->setValue (wanted[i].node, static_cast<float> (field.value (i) - options_.iso_level),
-                                 field.isInReach (i));
-  wanted.swap (left);
+      wanted[i].block->setValue (wanted[i].node, static_cast<float> (field.value (point) - options_.iso_level),
+                                 field.isInReach (point));
 }
 
 void

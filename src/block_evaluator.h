@@ -45,8 +45,9 @@ isInReach (const LocalField &local, const PolygonizerOptions &options, double vo
 class BlockEvaluator
 {
 public:
-  BlockEvaluator (const ImplicitField &field, const PolygonizerOptions &options, SparseGrid &grid)
-      : options_ (options), grid_ (grid), parts_ (partsOfBlock (field.typicalRadius () / grid.voxelSize ()))
+  /** \param[in] foresees whether nodes that were not asked for yet are evaluated, too, where it looks as if they will */
+  BlockEvaluator (const ImplicitField &field, const PolygonizerOptions &options, SparseGrid &grid, bool foresees)
+      : options_ (options), grid_ (grid), foresees_ (foresees), parts_ (partsOfBlock (field.typicalRadius () / grid.voxelSize ()))
   {
   }
 
@@ -55,6 +56,9 @@ public:
   evaluate (GridField &worker, const int *first_block, const int *last_block) const;
 
 private:
+  static void
+  listNodes (GridBlock &block, std::uint64_t nodes, std::vector<WantedNode> &list);
+
   Eigen::Vector3d
   positionOf (const WantedNode &node) const
   {
@@ -62,16 +66,32 @@ private:
   }
 
   void
-  evaluateWanted (GridField &worker) const;
+  evaluateWanted (GridField &worker, const int *first_block, const int *last_block) const;
 
+  /** \brief Evaluate the wanted nodes in lanes; those that want LocalField are left. */
   void
   evaluateTogether (GridField &worker) const;
+
+  /** \brief Evaluate the other nodes of some blocks that the surface will ask for, as far as one fit can tell.
+   *
+   * Following the surface asks for a few nodes of a block at a time; but gathering takes longer than evaluating these,
+   * and lanes stay empty.
+   * \param[in] center of the gathering
+   */
+  void
+  evaluateForeseen (GridField &worker, const int *first_block, const int *last_block,
+                    const Eigen::Vector3d &center) const;
+
+  /** \brief The nodes of a block that are corners of a cell with f = iso in it. */
+  std::uint64_t
+  nodesNear (const GridBlock &block, const FieldSketch &sketch) const;
 
   void
   evaluateAlone (LocalField &field, const WantedNode &node) const;
 
   const PolygonizerOptions &options_;
   SparseGrid &grid_;
+  bool foresees_;
   const std::vector<BlockPart> &parts_;
 };
 

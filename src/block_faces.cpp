@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "block_faces.h"
 
+#include "lane_settings.h"
+
 #include "support.h"
 #include "support_size.h"
 
@@ -28,29 +30,12 @@ combineTerms (const float *coefficients, const Eigen::Vector3d &u)
   return sum;
 }
 
-std::size_t
-termsOf (lanes::Basis basis)
-{
-  switch (basis)
-  {
-    case lanes::Basis::CONSTANT:
-      return ConstantBasis::SIZE;
-    case lanes::Basis::LINEAR:
-      return LinearBasis::SIZE;
-    case lanes::Basis::SPHERICAL:
-      return SphericalBasis::SIZE;
-    case lanes::Basis::QUADRATIC:
-      break;
-  }
-  return QuadraticBasis::SIZE;
-}
-
 } // namespace
 
 BlockFaces::BlockFaces (const ImplicitField &field, const lanes::Engine &engine, const lanes::Settings &settings,
                         double unit)
     : field_ (field), engine_ (engine), settings_ (settings), unit_ (unit), groups_ (field.faces ()),
-      all_ (field, engine, unit), of_part_ (field, engine, unit), at_part_ (0, termsOf (settings.basis))
+      all_ (field, engine, unit), of_part_ (field, engine, unit), at_part_ (0, termsOf (settings.basis), true)
 {
 }
 

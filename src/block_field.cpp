@@ -39,8 +39,8 @@ BlockField::BlockField (const ImplicitField &field, const lanes::Engine &engine)
     : field_ (field), can_evaluate_ (canEvaluate (field)), engine_ (engine), unit_ (field.supportSize ().typical ()),
       inverse_unit_ (1.0 / unit_), settings_ (laneSettingsOf (field)), nodes_ (field, engine, unit_),
       faces_ (field, engine, settings_, unit_), enrichment_ (field, unit_),
-      plain_ (static_cast<std::size_t> (field.points ().channels), 0),
-      enriched_ (static_cast<std::size_t> (field.points ().channels), 0)
+      plain_ (static_cast<std::size_t> (field.points ().channels), termsOf (settings_.basis), field.faces () != nullptr),
+      enriched_ (static_cast<std::size_t> (field.points ().channels), 0, field.faces () != nullptr)
 {
   setReach (1.0, 0.0, 0.0);
 }
@@ -267,6 +267,22 @@ BlockField::face (std::size_t point) const
   const int place = places_[point].at_faces;
   const int face = place < 0 ? -1 : faces_.face (static_cast<std::size_t> (place));
   return face >= 0 ? face : field_.faces ()->faceOf (nodes_.node (at (point).nearest[placeOf (point)]));
+}
+
+bool
+BlockField::sketch (std::size_t point, FieldSketch &sketch) const
+{
+  const std::size_t i = placeOf (point);
+  if (places_[point].is_enriched || settings_.constraint == lanes::Constraint::FUNCTIONAL ||
+      settings_.basis == lanes::Basis::CONSTANT || plain_.states[i] != lanes::State::DEFINED)
+    return false;
+  const auto coefficient = [&] (std::size_t j) { return unit_ * static_cast<double> (plain_.coefficient (i, j)); };
+  const double radius = unit_ * static_cast<double> (plain_.radii[i]);
+  sketch.x = center_ + unit_ * plain_.position (i).cast<double> ();
+  sketch.value = coefficient (0);
+  sketch.slope = Eigen::Vector3d (coefficient (1), coefficient (2), coefficient (3)) / radius;
+  sketch.bend = settings_.basis == lanes::Basis::SPHERICAL ? coefficient (4) / (radius * radius) : 0.0;
+  return true;
 }
 
 std::uint64_t

@@ -5,6 +5,7 @@
 #include "block_faces.h"
 #include "block_nodes.h"
 #include "block_points.h"
+#include "field_sketch.h"
 
 #include <erkpa/implicit_field.h>
 
@@ -126,6 +127,13 @@ public:
   /** \brief See LocalField::face (); elsewhere that of the nearest node; -1 where the field has no faces. */
   int
   face (std::size_t point) const;
+
+  /** \brief f around a point that no sharp surface is near; false where there is none.
+   *
+   * Not for eq. (2) either: what the nodes ask for depends on the point, and their fit says nothing of other ones.
+   */
+  bool
+  sketch (std::size_t point, FieldSketch &sketch) const;
 
   /** \brief See LocalField::sideKey (). */
   std::uint64_t

@@ -7,6 +7,30 @@
 namespace erkpa
 {
 
+namespace
+{
+
+/** \brief Calls take (i, place) for each place; where many follow each other, in a loop that a compiler makes vectors
+ * of. */
+template <typename TakeT>
+void
+visitPlaces (const std::vector<std::uint32_t> &places, std::size_t count, TakeT take)
+{
+  constexpr std::uint32_t RUN = 8;
+  for (std::size_t i = 0; i < count; i += RUN)
+  {
+    const std::uint32_t first = places[i];
+    if (i + RUN <= count && places[i + RUN - 1] - first == RUN - 1)
+      for (std::uint32_t j = 0; j < RUN; ++j)
+        take (i + j, first + j);
+    else
+      for (std::size_t j = i; j < std::min (i + RUN, count); ++j)
+        take (j, places[j]);
+  }
+}
+
+} // namespace
+
 BlockNodes::BlockNodes (const ImplicitField &field, const lanes::Engine &engine, double unit)
     : field_ (field), table_ (field.nodeTable ()), search_ (*engine.search), index_ (table_.grid->index ()),
       inverse_unit_ (1.0 / unit)
@@ -85,8 +109,9 @@ BlockNodes::copy ()
   for (std::size_t a = 0; a < 3; ++a)
   {
     normals_[a].resize (value_points_);
-    for (std::size_t i = 0; i < count_; ++i)
-      normals_[a][i] = table_.normals[a][places_[i]];
+    float *const to = normals_[a].data ();
+    const float *const from = table_.normals[a].data ();
+    visitPlaces (places_, count_, [=] (std::size_t i, std::uint32_t place) { to[i] = from[place]; });
   }
   confidences_.resize (has_confidences ? value_points_ : 0);
   for (std::size_t i = 0; i < confidences_.size (); ++i)
@@ -111,10 +136,11 @@ BlockNodes::copyPositions ()
   for (std::size_t a = 0; a < 3; ++a)
   {
     positions_[a].resize (per_node * count_ + lanes::MAX_WIDTH);
-    const std::vector<float> &from = table_.grid->coordinates (static_cast<int> (a));
+    float *const to = positions_[a].data ();
+    const float *const from = table_.grid->coordinates (static_cast<int> (a)).data ();
     const auto center = static_cast<float> (center_[static_cast<Eigen::Index> (a)]);
-    for (std::size_t i = 0; i < count_; ++i)
-      positions_[a][i] = (from[places_[i]] - center) * scale;
+    visitPlaces (places_, count_,
+                 [=] (std::size_t i, std::uint32_t place) { to[i] = (from[place] - center) * scale; });
   }
 }
 

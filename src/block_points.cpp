@@ -2,6 +2,7 @@
 #include "block_points.h"
 
 #include <algorithm>
+#include <memory>
 
 namespace erkpa
 {
@@ -51,13 +52,24 @@ BlockPoints::pad ()
   repeat_last (guesses_);
 }
 
+/** \brief The first row at the start of a cache line: others would lie on two of them. */
+float *
+BlockPoints::alignedRows ()
+{
+  void *start = rows_.data ();
+  std::size_t space = rows_.size () * sizeof (float);
+  return static_cast<float *> (
+      std::align (lanes::MAX_WIDTH * sizeof (float), space - lanes::MAX_WIDTH * sizeof (float), start, space));
+}
+
 void
 BlockPoints::run (const lanes::Engine &engine, const lanes::Settings &settings, const lanes::Nodes &nodes, bool growths,
                   const lanes::SharpSurfaces *sharp)
 {
   pad ();
   list_.resize (std::max (list_.size (), nodes.count + lanes::MAX_WIDTH));
-  rows_.resize (std::max (rows_.size (), lanes::MAX_WIDTH * (nodes.on_surface + 1)));
+  near_.resize (lanes::Scratch::COLUMNS * list_.size ());
+  rows_.resize (std::max (rows_.size (), lanes::MAX_WIDTH * (nodes.count + 2)));
   const auto growth = [&] (std::size_t a) { return growths ? growths_[a].data () : nullptr; };
   const lanes::Points points{count_,
                              points_[0].data (),
@@ -72,7 +84,7 @@ BlockPoints::run (const lanes::Engine &engine, const lanes::Settings &settings, 
   samples.radius = radii.data ();
   samples.in_reach = in_reach.data ();
   samples.state = states.data ();
-  samples.nearest = nearest.data ();
+  samples.nearest = wants_nearest_ ? nearest.data () : nullptr;
   samples.nearest_distance = nearest_distances.data ();
   samples.aside = asides.data ();
   samples.coefficients = terms_ > 0 ? coefficients_.data () : nullptr;
@@ -86,7 +98,7 @@ BlockPoints::run (const lanes::Engine &engine, const lanes::Settings &settings, 
   samples.border_offset = border_offsets.data ();
   samples.attributes = attributes_.data ();
   engine.evaluate (settings, nodes, points, sharp != nullptr ? *sharp : lanes::SharpSurfaces{},
-                   {list_.data (), rows_.data ()}, samples);
+                   {list_.data (), near_.data (), alignedRows ()}, samples);
 }
 
 } // namespace erkpa

@@ -20,8 +20,12 @@ class BlockPoints
 public:
   /** \param[in] channels of the nodes' attributes
    * \param[in] terms whose coefficients are wanted; 0: none
+   * \param[in] wants_nearest whether the nearest nodes are wanted
    */
-  BlockPoints (std::size_t channels, std::size_t terms) : channels_ (channels), terms_ (terms) {}
+  BlockPoints (std::size_t channels, std::size_t terms, bool wants_nearest)
+      : channels_ (channels), terms_ (terms), wants_nearest_ (wants_nearest)
+  {
+  }
 
   void
   clear ()
@@ -110,15 +114,19 @@ private:
   void
   resize (std::size_t size);
 
+  float *
+  alignedRows ();
+
   /** \brief The last vector is filled up with the last point. */
   void
   pad ();
 
   std::size_t channels_, terms_, count_ = 0;
+  bool wants_nearest_;
   std::array<std::vector<float>, 3> points_, growths_;
   std::vector<float> bounds_, guesses_, attributes_, coefficients_;
   std::vector<std::uint32_t> list_;
-  std::vector<float> rows_;
+  std::vector<float> near_, rows_;
 };
 
 } // namespace erkpa

@@ -83,4 +83,21 @@ laneSettingsOf (const ImplicitField &field)
   return settings;
 }
 
+std::size_t
+termsOf (lanes::Basis basis)
+{
+  switch (basis)
+  {
+    case lanes::Basis::CONSTANT:
+      return ConstantBasis::SIZE;
+    case lanes::Basis::LINEAR:
+      return LinearBasis::SIZE;
+    case lanes::Basis::SPHERICAL:
+      return SphericalBasis::SIZE;
+    case lanes::Basis::QUADRATIC:
+      break;
+  }
+  return QuadraticBasis::SIZE;
+}
+
 } // namespace erkpa

@@ -5,6 +5,7 @@
 
 #include <erkpa/implicit_field.h>
 
+#include <cstddef>
 #include <optional>
 
 namespace erkpa
@@ -17,5 +18,9 @@ laneKernelOf (const FieldOptions &options);
 /** \brief What the lanes are to know of a field. */
 lanes::Settings
 laneSettingsOf (const ImplicitField &field);
+
+/** \brief Number of terms of a basis. */
+std::size_t
+termsOf (lanes::Basis basis);
 
 } // namespace erkpa

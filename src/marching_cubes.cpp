@@ -14,6 +14,7 @@
 #include "surface_pieces.h"
 #include "surface_tracking.h"
 #include "surface_vertices.h"
+#include "vertex_projection.h"
 #include "text.h"
 
 #include <Eigen/Geometry>

@@ -2,9 +2,8 @@
 #include "surface_feet.h"
 
 #include "block_evaluator.h"
+#include "point_groups.h"
 #include "threads.h"
-
-#include <Eigen/Geometry>
 
 #include <cmath>
 #include <cstddef>
@@ -14,14 +13,6 @@ namespace erkpa
 
 namespace
 {
-
-/** \brief Points that follow each other and lie close together. */
-struct Group
-{
-  std::size_t first, last;
-  Eigen::Vector3d center;
-  double extent;
-};
 
 class FootFinder
 {
@@ -39,7 +30,8 @@ public:
     constexpr int STEPS = 4;
     for (int step = 0; step < STEPS && !waiting_.empty (); ++step)
     {
-      const std::vector<Group> groups = makeGroups ();
+      const std::vector<PointGroup> groups = groupPoints (
+          waiting_.size (), voxel_, [this] (std::size_t w) -> const Eigen::Vector3d & { return points_[waiting_[w]]; });
       parallelFor (
           groups.size (), options_.threads, [&] { return GridField (field, options_, voxel_); },
           [&] (GridField &worker, std::size_t g) { stepTogether (worker, groups[g]); },
@@ -64,34 +56,8 @@ private:
     LOST
   };
 
-  /** \brief Groups of those on their way, about as large as the blocks of a grid. */
-  std::vector<Group>
-  makeGroups () const
-  {
-    constexpr std::size_t MOST = 64;
-    constexpr double EXTENT = 2.6; // voxels
-    std::vector<Group> groups;
-    Eigen::AlignedBox3d box;
-    for (std::size_t w = 0; w < waiting_.size (); ++w)
-    {
-      const Eigen::Vector3d &x = points_[waiting_[w]];
-      Eigen::AlignedBox3d grown = box;
-      grown.extend (x);
-      if (groups.empty () || w - groups.back ().first == MOST || 0.5 * grown.diagonal ().norm () > EXTENT * voxel_)
-      {
-        groups.push_back ({w, w, x, 0.0});
-        grown = Eigen::AlignedBox3d (x, x);
-      }
-      box = grown;
-      groups.back ().last = w + 1;
-      groups.back ().center = box.center ();
-      groups.back ().extent = 0.5 * box.diagonal ().norm ();
-    }
-    return groups;
-  }
-
   void
-  stepTogether (GridField &worker, const Group &group)
+  stepTogether (GridField &worker, const PointGroup &group)
   {
     BlockField &block = worker.block;
     std::vector<std::size_t> together;

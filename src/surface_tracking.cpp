@@ -114,7 +114,11 @@ SurfaceTracker::request (int index, std::uint64_t nodes)
 void
 SurfaceTracker::evaluateRequested ()
 {
-  const BlockEvaluator evaluator (field_, options_, grid_);
+  // The surface passes some 16 cells of a block. Where the nodes lie in few of them, the first front asks for little.
+  constexpr std::size_t FEW = 8;
+  if (evaluated_blocks_ == 0)
+    foresees_ = nodeCount () < FEW * requested_blocks_.size ();
+  const BlockEvaluator evaluator (field_, options_, grid_, foresees_);
   const std::size_t block_count = requested_blocks_.size ();
   const BlockGroups groups (grid_, std::move (requested_blocks_), field_.typicalRadius () / grid_.voxelSize ());
   // In slices, so that progress shows during the first front, which is the largest by far.

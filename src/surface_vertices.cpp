@@ -54,23 +54,6 @@ struct EdgeRoot
   }
 };
 
-void
-storeVertex (const LocalField &local, const LocalSample &sample, const Eigen::Vector3d &position, std::size_t vertex,
-             int channels, SurfaceVertices &vertices)
-{
-  vertices.positions[vertex] = position;
-  const double slope = sample.gradient.norm ();
-  vertices.normals[vertex] = slope > 0.0 ? Eigen::Vector3d (sample.gradient / slope) : Eigen::Vector3d::Zero ();
-  vertices.border_offsets[vertex] = sample.border_offset;
-  if (vertices.has_sides)
-  {
-    vertices.faces[vertex] = local.face ();
-    vertices.side_keys[vertex] = local.sideKey ();
-  }
-  if (channels > 0)
-    local.blendAttributes (&vertices.attributes[vertex * static_cast<std::size_t> (channels)]);
-}
-
 /** \brief Moves a vertex of a thickened wall to the piece of f of its face; to the edge of the wall where that lies
  * beyond it. */
 void
@@ -106,7 +89,7 @@ class VertexPlacer
 public:
   VertexPlacer (const ImplicitField &field, const PolygonizerOptions &options, const SparseGrid &grid,
                 SurfaceVertices &vertices)
-      : options_ (options), grid_ (grid), vertices_ (vertices), channels_ (field.points ().channels),
+      : options_ (options), grid_ (grid), vertices_ (vertices),
         parts_ (partsOfBlock (field.typicalRadius () / grid.voxelSize ()))
   {
   }
@@ -210,29 +193,16 @@ private:
         else if (root.refine (field.value (i) - options_.iso_level, slope) > SHORT)
           roots[left++] = root;
         else
-          store (field, i, positionOf (root), vertexOf (root));
+        {
+          const std::size_t vertex = vertexOf (root);
+          storeVertex (field, i, positionOf (root), vertex, vertices_);
+          if (!vertices_.found.empty ())
+            vertices_.found[vertex] = vertices_.positions[vertex];
+        }
       }
       roots.erase (roots.begin () + static_cast<std::ptrdiff_t> (left), roots.end ());
     }
     roots.insert (roots.end (), alone.begin (), alone.end ());
-  }
-
-  void
-  store (const BlockField &field, std::size_t point, const Eigen::Vector3d &position, std::size_t vertex) const
-  {
-    vertices_.positions[vertex] = position;
-    if (!vertices_.found.empty ())
-      vertices_.found[vertex] = position;
-    vertices_.normals[vertex] = field.gradient (point).stableNormalized ();
-    vertices_.border_offsets[vertex] = field.borderOffset (point);
-    if (vertices_.has_sides)
-    {
-      vertices_.faces[vertex] = field.face (point);
-      vertices_.side_keys[vertex] = field.sideKey (point);
-    }
-    const auto channels = static_cast<std::size_t> (channels_);
-    for (std::size_t c = 0; c < channels; ++c)
-      vertices_.attributes[vertex * channels + c] = field.attribute (point, c);
   }
 
   void
@@ -249,7 +219,7 @@ private:
         break;
     }
     const std::size_t vertex = vertexOf (root);
-    storeVertex (local, sample, position, vertex, channels_, vertices_);
+    storeVertex (local, sample, position, vertex, vertices_);
     if (!vertices_.found.empty ())
       vertices_.found[vertex] = position;
     if (local.thickening () != 0.0)
@@ -259,11 +229,44 @@ private:
   const PolygonizerOptions &options_;
   const SparseGrid &grid_;
   SurfaceVertices &vertices_;
-  int channels_;
   const std::vector<BlockPart> &parts_;
 };
 
 } // namespace
+
+void
+storeVertex (const LocalField &local, const LocalSample &sample, const Eigen::Vector3d &position, std::size_t vertex,
+             SurfaceVertices &vertices)
+{
+  vertices.positions[vertex] = position;
+  const double slope = sample.gradient.norm ();
+  vertices.normals[vertex] = slope > 0.0 ? Eigen::Vector3d (sample.gradient / slope) : Eigen::Vector3d::Zero ();
+  vertices.border_offsets[vertex] = sample.border_offset;
+  if (vertices.has_sides)
+  {
+    vertices.faces[vertex] = local.face ();
+    vertices.side_keys[vertex] = local.sideKey ();
+  }
+  if (const std::size_t channels = vertices.channels (); channels > 0)
+    local.blendAttributes (&vertices.attributes[vertex * channels]);
+}
+
+void
+storeVertex (const BlockField &field, std::size_t point, const Eigen::Vector3d &position, std::size_t vertex,
+             SurfaceVertices &vertices)
+{
+  vertices.positions[vertex] = position;
+  vertices.normals[vertex] = field.gradient (point).stableNormalized ();
+  vertices.border_offsets[vertex] = field.borderOffset (point);
+  if (vertices.has_sides)
+  {
+    vertices.faces[vertex] = field.face (point);
+    vertices.side_keys[vertex] = field.sideKey (point);
+  }
+  const std::size_t channels = vertices.channels ();
+  for (std::size_t c = 0; c < channels; ++c)
+    vertices.attributes[vertex * channels + c] = field.attribute (point, c);
+}
 
 void
 placeVertices (const ImplicitField &field, const PolygonizerOptions &options, SparseGrid &grid,
@@ -293,39 +296,6 @@ placeVertices (const ImplicitField &field, const PolygonizerOptions &options, Sp
     if (progress)
       progress (static_cast<double> (last) / static_cast<double> (groups.size ()));
   }
-}
-
-void
-projectVertices (const ImplicitField &field, const PolygonizerOptions &options, std::size_t first, double limit,
-                 SurfaceVertices &vertices, PolygonizerReport &report)
-{
-  const int channels = field.points ().channels;
-  vertices.resize (vertices.positions.size (), channels);
-  const auto project = [&] (LocalField &local, std::size_t i)
-  {
-    const std::size_t vertex = first + i;
-    const Eigen::Vector3d start = vertices.positions[vertex];
-    Eigen::Vector3d position = start;
-    local.gather (start, limit);
-    LocalSample sample = local.sample (position);
-    for (int step = 0; step < 3 && sample.isDefined (); ++step)
-    {
-      const double slope = std::max (sample.gradient.squaredNorm (), 1e-12);
-      const Eigen::Vector3d next = position + (options.iso_level - sample.value) / slope * sample.gradient;
-      if (!((next - start).norm () < limit))
-        break;
-      position = next;
-      sample = local.sample (position);
-    }
-    storeVertex (local, sample, position, vertex, channels, vertices);
-  };
-  parallelFor (
-      vertices.positions.size () - first, options.threads, [&] { return LocalField (field); }, project,
-      [&report] (const LocalField &local)
-      {
-        report.evaluations += local.evaluations ();
-        report.support_nodes += local.supportNodes ();
-      });
 }
 
 } // namespace erkpa

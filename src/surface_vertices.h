@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include "block_field.h"
 #include "local_field.h"
 #include "sparse_grid.h"
 
@@ -23,6 +24,13 @@ struct SurfaceVertices
   std::vector<std::uint64_t> side_keys; ///< see LocalField::sideKey ()
   std::vector<float> attributes;        ///< channels values per vertex
   std::vector<Eigen::Vector3d> found;   ///< of those on edges of the grid, where; thin walls move them from there
+
+  /** \brief Values of attributes per vertex. */
+  std::size_t
+  channels () const
+  {
+    return positions.empty () ? 0 : attributes.size () / positions.size ();
+  }
 
   void
   resize (std::size_t size, int channels)
@@ -51,7 +59,7 @@ struct SurfaceVertices
   void
   append (std::size_t vertex)
   {
-    const std::size_t channels = attributes.size () / positions.size ();
+    const std::size_t channels = this->channels ();
     for (std::size_t c = 0; c < channels; ++c)
       attributes.push_back (attributes[vertex * channels + c]);
     const Eigen::Vector3d position = positions[vertex], normal = normals[vertex];
@@ -74,9 +82,14 @@ void
 placeVertices (const ImplicitField &field, const PolygonizerOptions &options, SparseGrid &grid,
                SurfaceVertices &vertices, PolygonizerReport &report, const ProgressCallback &progress);
 
-/** \brief Project vertices \a first .. end to f = iso, each within \a limit of where it is, and fill in the rest. */
+/** \brief Keep a vertex's place, and what the field says there: normal, border offset, sides and attributes. */
 void
-projectVertices (const ImplicitField &field, const PolygonizerOptions &options, std::size_t first, double limit,
-                 SurfaceVertices &vertices, PolygonizerReport &report);
+storeVertex (const LocalField &local, const LocalSample &sample, const Eigen::Vector3d &position, std::size_t vertex,
+             SurfaceVertices &vertices);
+
+/** \param[in] point of the block, with gradients */
+void
+storeVertex (const BlockField &field, std::size_t point, const Eigen::Vector3d &position, std::size_t vertex,
+             SurfaceVertices &vertices);
 
 } // namespace erkpa

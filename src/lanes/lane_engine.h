@@ -3,6 +3,7 @@
 
 #include "lane_enriched_fit.h"
 #include "lane_fit.h"
+#include "lane_moments.h"
 
 namespace erkpa::lanes
 {
@@ -12,19 +13,35 @@ template <typename B>
 class LaneEngine
 {
 public:
+  /** \brief At most so many vectors of points share a list of nodes. */
+  static constexpr std::size_t SHARED = 4;
+
   LaneEngine (const Settings &settings, const Nodes &nodes, const Points &points, const Scratch &scratch,
               const Samples &samples)
       : settings_ (settings), nodes_ (nodes), points_ (points), scratch_ (scratch), samples_ (samples)
   {
   }
 
-  /** \param[in] take take (support, first point) makes the fit there and stores it */
-  template <typename TakeT>
+  /** \param[in] prepare prepare (supports, count) is told of the supports that are taken next
+   * \param[in] take take (s, support, first point) makes the fit there and stores it
+   */
+  template <typename PrepareT, typename TakeT>
   void
-  evaluate (TakeT take) const
+  evaluate (PrepareT prepare, TakeT take) const
   {
-    for (std::size_t first = 0; first < points_.count; first += B::size)
-      take (LaneSupport<B> (settings_, nodes_, points_, first, scratch_), first);
+    // Supports of k nodes differ too much for one list.
+    const std::size_t together = settings_.k > 0 ? 1 : SHARED;
+    LaneSupport<B> supports[SHARED];
+    for (std::size_t first = 0; first < points_.count; first += together * B::size)
+    {
+      std::size_t count = 0;
+      for (std::size_t at = first; count < together && at < points_.count; at += B::size)
+        supports[count++].moveTo (settings_, nodes_, points_, at, scratch_);
+      LaneSupport<B>::listNodes (supports, count);
+      prepare (supports, count);
+      for (std::size_t s = 0; s < count; ++s)
+        take (s, supports[s], first + s * B::size);
+    }
   }
 
   /** \brief Store what a fit, LaneFit or LaneEnrichedFit, says. */
@@ -44,6 +61,8 @@ public:
       storeGradients (support, fit, first, state);
     state = xsimd::select (support.isShort (), B (3.0f), state);
     storeBytes (near, state, fit, first);
+    if (samples_.nearest != nullptr)
+      storeNearest (support.nodeAt (fit.reach ().squaredNearest ()), first);
   }
 
 private:
@@ -52,7 +71,7 @@ private:
   storeFit (const FitT &fit, std::size_t first) const
   {
     if (samples_.nearest_distance != nullptr)
-      fit.reach ().nearestDistance ().store_unaligned (samples_.nearest_distance + first);
+      xsimd::sqrt (fit.reach ().squaredNearest ()).store_unaligned (samples_.nearest_distance + first);
     if (samples_.aside != nullptr)
       fit.aside ().store_unaligned (samples_.aside + first);
     if constexpr (!FitT::IS_ENRICHED)
@@ -87,24 +106,30 @@ private:
   void
   storeBytes (B near, B state, const FitT &fit, std::size_t first) const
   {
-    float nears[B::size], states[B::size], nearest[B::size], support[B::size];
+    float nears[B::size], states[B::size], support[B::size];
     near.store_unaligned (nears);
     state.store_unaligned (states);
-    fit.reach ().nearestNode ().store_unaligned (nearest);
     fit.reach ().supportNodes ().store_unaligned (support);
     for (std::size_t i = 0; i < B::size; ++i)
     {
       samples_.in_reach[first + i] = nears[i] > 0.5f ? 1 : 0;
       samples_.state[first + i] = static_cast<State> (static_cast<int> (states[i]));
       samples_.support[first + i] = static_cast<std::uint32_t> (support[i]);
-      if (samples_.nearest != nullptr)
-        samples_.nearest[first + i] = static_cast<std::uint32_t> (nearest[i]);
     }
     if (samples_.active != nullptr)
       for (std::size_t i = 0; i < B::size; ++i)
         samples_.active[first + i] = 0;
     if constexpr (FitT::IS_ENRICHED)
       storeActive (fit, first);
+  }
+
+  void
+  storeNearest (B node, std::size_t first) const
+  {
+    float nodes[B::size];
+    node.store_unaligned (nodes);
+    for (std::size_t i = 0; i < B::size; ++i)
+      samples_.nearest[first + i] = static_cast<std::uint32_t> (nodes[i]);
   }
 
   template <typename FitT>
@@ -133,12 +158,14 @@ evaluateWith (const Settings &settings, const Nodes &nodes, const Points &points
               const Samples &samples)
 {
   const LaneEngine<B> engine (settings, nodes, points, scratch, samples);
-  engine.evaluate (
-      [&] (const LaneSupport<B> &support, std::size_t first)
-      {
-        LaneFit<B, BASIS, CONSTRAINT, KernelT> fit (settings, nodes, support);
-        engine.store (support, fit, first);
-      });
+  LaneMoments<B, BASIS, CONSTRAINT, KernelT> moments (settings);
+  engine.evaluate ([&] (const LaneSupport<B> *supports, std::size_t count) { moments.sum (supports, count); },
+                   [&] (std::size_t s, const LaneSupport<B> &support, std::size_t first)
+                   {
+                     LaneFit<B, BASIS, CONSTRAINT, KernelT> fit (settings, support, moments.reach (s),
+                                                                 moments.system (s));
+                     engine.store (support, fit, first);
+                   });
 }
 
 template <typename B, Basis BASIS, template <typename> class KernelT>
@@ -149,16 +176,23 @@ evaluateEnriched (const Settings &settings, const Nodes &nodes, const Points &po
   const LaneEngine<B> engine (settings, nodes, points, scratch, samples);
   const auto take_with = [&] (auto fit, const LaneSupport<B> &support, std::size_t first)
   { engine.store (support, fit, first); };
+  LaneMoments<B, BASIS, Constraint::HERMITE, KernelT> moments (settings);
   engine.evaluate (
-      [&] (const LaneSupport<B> &support, std::size_t first)
+      [] (const LaneSupport<B> *, std::size_t) {},
+      [&] (std::size_t, const LaneSupport<B> &support, std::size_t first)
       {
         const LaneSurfaces<B> near (sharp, first, support.radius ());
         if (near.count == 0)
-          take_with (LaneFit<B, BASIS, Constraint::HERMITE, KernelT> (settings, nodes, support), support, first);
+        {
+          moments.sum (&support, 1);
+          take_with (LaneFit<B, BASIS, Constraint::HERMITE, KernelT> (settings, support, moments.reach (0),
+                                                                      moments.system (0)),
+                     support, first);
+        }
         else if (near.count == 1)
-          take_with (LaneEnrichedFit<B, BASIS, KernelT, 1> (settings, nodes, near, first, support), support, first);
+          take_with (LaneEnrichedFit<B, BASIS, KernelT, 1> (settings, near, first, support), support, first);
         else
-          take_with (LaneEnrichedFit<B, BASIS, KernelT, ANY_COUNT> (settings, nodes, near, first, support), support,
+          take_with (LaneEnrichedFit<B, BASIS, KernelT, ANY_COUNT> (settings, near, first, support), support,
                      first);
       });
 }

@@ -24,9 +24,9 @@ public:
   static constexpr bool IS_ENRICHED = true;
 
   /** \param[in] first place of the evaluation point in the first lane */
-  LaneEnrichedFit (const Settings &settings, const Nodes &nodes, const LaneSurfaces<B> &near, std::size_t first,
+  LaneEnrichedFit (const Settings &settings, const LaneSurfaces<B> &near, std::size_t first,
                    const LaneSupport<B> &support)
-      : nodes_ (nodes), support_ (support), weights_ (settings, nodes, support), scale_ (support.inverse ()),
+      : support_ (support), weights_ (settings, support), scale_ (support.inverse ()),
         reach_ (settings, support.radius (), support.squaredRadius ()), kinks_ (near, first, scale_)
   {
     sumMoments ();
@@ -90,7 +90,7 @@ public:
     Change all, below[KinksT::MAX_COUNT], above[KinksT::MAX_COUNT];
     B by_u[3] = {B (0.0f), B (0.0f), B (0.0f)}, by_radius (0.0f);
     for (std::size_t i = 0; i < support_.size (); ++i)
-      addResidual (support_.node (i), by_u, by_radius, all, below, above);
+      addResidual (i, by_u, by_radius, all, below, above);
     for (int a = 0; a < 3; ++a)
     {
       gradient[a] = xsimd::fma (growth_[a], by_radius, c_[1 + a] - by_u[a]);
@@ -103,7 +103,7 @@ public:
                                                radius_gradient[a]);
         const B part = a_[squareOf (s)] * c_[squareOf (s)];
         gradient[a] =
-            xsimd::select (part > B (0.0f) || part < B (0.0f), xsimd::fnma (part, of_fade, gradient[a]), gradient[a]);
+            xsimd::select (part > B (0.0f) || part < B (0.0f), fnma (part, of_fade, gradient[a]), gradient[a]);
       }
     }
   }
@@ -154,7 +154,7 @@ private:
     B
     along (int a, const B *growth) const
     {
-      return xsimd::fnma (B (0.5f) * by_radius, growth[a], -by_u[a]);
+      return fnma (B (0.5f) * by_radius, growth[a], -by_u[a]);
     }
   };
 
@@ -185,24 +185,26 @@ private:
     {
       const std::size_t node = support_.node (i);
       B d[3], squared, t;
-      const B weight = weights_.weight (node, d, squared, t);
-      reach_.count (node, node < nodes_.on_surface, squared);
+      const B weight = weights_.weight (i, d, squared, t);
+      reach_.count (squared);
       kinks_.weigh (node, weight);
       for (int a = 0; a < 3; ++a)
         d[a] *= scale_;
-      addNode (node, weight, d);
+      addNode (i, weight, d);
     }
+    reach_.endOnSurface ();
   }
 
   void
-  addNode (std::size_t node, B weight, const B *u)
+  addNode (std::size_t i, B weight, const B *u)
   {
+    const std::size_t node = support_.node (i);
     B n[3], R[MAX_SIZE], G[KinksT::MAX_TERMS][3];
-    weights_.normal (node, n);
+    weights_.normal (i, n);
     TermsT::evaluate (u, dot (u, u), R);
     TermsT::addNormal (weight, u, n, b_);
     kinks_.evaluate (node, R + SIZE, G);
-    const B height = weights_.lambda (node) * scale_;
+    const B height = weights_.lambda (i) * scale_;
     for (int j = 0; j < size (); ++j)
     {
       const B wr = weight * R[j];
@@ -260,7 +262,7 @@ private:
       {
         const B factor = M_[at (k, j)] * inverse;
         for (int i = k; i < size (); ++i)
-          M_[at (i, k)] = xsimd::fnma (M_[at (i, j)], factor, M_[at (i, k)]);
+          M_[at (i, k)] = fnma (M_[at (i, j)], factor, M_[at (i, k)]);
       }
       for (int i = j + 1; i < size (); ++i)
         M_[at (i, j)] *= inverse;
@@ -286,30 +288,31 @@ private:
   {
     for (int j = 0; j < size (); ++j)
       for (int i = j + 1; i < size (); ++i)
-        v[i] = xsimd::fnma (M_[at (i, j)], v[j], v[i]);
+        v[i] = fnma (M_[at (i, j)], v[j], v[i]);
     for (int j = 0; j < size (); ++j)
       v[j] /= M_[at (j, j)];
     for (int j = size () - 2; j >= 0; --j)
       for (int i = j + 1; i < size (); ++i)
-        v[j] = xsimd::fnma (M_[at (i, j)], v[i], v[j]);
+        v[j] = fnma (M_[at (i, j)], v[i], v[j]);
   }
 
   /** \brief The residual of the fit at a node, by which the change of its weight moves f; and that change by itself. */
   void
-  addResidual (std::size_t node, B *by_u, B &by_radius, Change &all, Change *below, Change *above) const
+  addResidual (std::size_t place, B *by_u, B &by_radius, Change &all, Change *below, Change *above) const
   {
+    const std::size_t node = support_.node (place);
     B u[3], squared, t, n[3], R[MAX_SIZE], G[KinksT::MAX_TERMS][3];
-    const B weight = weights_.weight (node, u, squared, t);
-    weights_.normal (node, n);
+    const B weight = weights_.weight (place, u, squared, t);
+    weights_.normal (place, n);
     for (int a = 0; a < 3; ++a)
       u[a] *= scale_;
     TermsT::evaluate (u, t * t, R);
     kinks_.evaluate (node, R + SIZE, G);
-    B share (0.0f), residual = weights_.lambda (node) * scale_;
+    B share (0.0f), residual = weights_.lambda (place) * scale_;
     for (int j = 0; j < size (); ++j)
     {
       share = xsimd::fma (a_[j], R[j], share);
-      residual = xsimd::fnma (c_[j], R[j], residual);
+      residual = fnma (c_[j], R[j], residual);
     }
     B of_shape[3], of_fit[3];
     TermsT::slopes (a_, u, of_shape);
@@ -326,15 +329,14 @@ private:
     const B of_gradients = dot (of_shape, n);
     residual = xsimd::fma (share, residual, of_gradients);
     by_radius = xsimd::fma (weight, of_gradients, by_radius);
-    const B slope = weights_.slope (node, t), force = slope * residual;
-    by_radius = xsimd::fnma (B (0.5f) * t * t, force, by_radius);
+    const B slope = weights_.slope (place, t), force = slope * residual;
+    by_radius = fnma (B (0.5f) * t * t, force, by_radius);
     for (int a = 0; a < 3; ++a)
       by_u[a] = xsimd::fma (force, u[a], by_u[a]);
     all.add (slope, u, t);
     kinks_.visitSides (node, [&] (int s, bool is_below) { (is_below ? below : above)[s].add (slope, u, t); });
   }
 
-  const Nodes &nodes_;
   const LaneSupport<B> &support_;
   LaneWeights<B, KernelT> weights_;
   B scale_;

@@ -2,7 +2,6 @@
 #pragma once
 
 #include "lane_reach.h"
-#include "lane_support.h"
 #include "lane_system.h"
 #include "lane_weights.h"
 
@@ -21,18 +20,19 @@ public:
   static constexpr int SIZE = Terms<B, BASIS>::SIZE;
   static constexpr bool IS_ENRICHED = false;
 
-  LaneFit (const Settings &settings, const Nodes &nodes, const LaneSupport<B> &support)
-      : nodes_ (nodes), support_ (support), weights_ (settings, nodes, support), scale_ (support.inverse ()),
-        reach_ (settings, support.radius (), support.squaredRadius ())
+  /** \param[in,out] sums M and b as LaneMoments says them; the decomposition of M when the fit is made */
+  LaneFit (const Settings &settings, const LaneSupport<B> &support, const LaneReach<B> &reach,
+           LaneSystem<Terms<B, BASIS>, B> &sums)
+      : support_ (support), weights_ (settings, support), scale_ (support.inverse ()), reach_ (reach),
+        system_ (sums)
   {
-    sumMoments ();
     scaleMoments ();
     for (int a = 0; a < (SIZE > 1 ? 3 : 0); ++a)
       centroid_[a] = system_.M[at (1 + a, 0)] / system_.M[0];
     B spread (0.0f);
     if constexpr (SIZE > 1)
       for (int a = 0; a < 3; ++a)
-        spread += xsimd::fnma (centroid_[a], system_.M[at (1 + a, 0)], system_.M[at (1 + a, 1 + a)]);
+        spread += fnma (centroid_[a], system_.M[at (1 + a, 0)], system_.M[at (1 + a, 1 + a)]);
     spread_ = spread;
     weight_ = system_.M[0];
     if constexpr (CONSTRAINT == Constraint::HERMITE)
@@ -89,8 +89,7 @@ public:
     B by_u[3] = {B (0.0f), B (0.0f), B (0.0f)}, by_radius (0.0f), direct[3] = {by_radius, by_radius, by_radius};
     if constexpr (SIZE == 1)
       centroid_[0] = centroid_[1] = centroid_[2] = B (0.0f);
-    for (std::size_t i = 0; i < support_.size (); ++i)
-      addResidual (support_.node (i), by_u, by_radius, direct);
+    visitNodes ([&] (std::size_t i, B t, const B *u) { addResidual (i, t, u, by_u, by_radius, direct); });
     for (int a = 0; a < 3; ++a)
     {
       gradient[a] = xsimd::fma (growth[a], by_radius, direct[a] - by_u[a]);
@@ -132,51 +131,6 @@ private:
   // With other constraints pivots that are raised are a rare thing.
   static constexpr bool RAISES_MATTER = CONSTRAINT == Constraint::FUNCTIONAL;
 
-  void
-  sumMoments ()
-  {
-    LaneSystem<TermsT, B> sums;
-    const std::size_t count = support_.size ();
-    for (std::size_t i = 0; i < count; ++i)
-    {
-      const std::size_t node = support_.node (i);
-      B d[3], squared, t;
-      const B weight = weights_.weight (node, d, squared, t);
-      reach_.count (node, node < nodes_.on_surface, squared);
-      addNode (node, weight, d, squared, sums);
-    }
-    system_ = sums;
-  }
-
-  void
-  addNode (std::size_t node, B weight, const B *d, B squared, LaneSystem<TermsT, B> &sums) const
-  {
-    B R[SIZE], n[3];
-    TermsT::evaluate (d, squared, R);
-    weights_.normal (node, n);
-    B weighted[SIZE];
-    weighted[0] = weight;
-    for (int j = 1; j < SIZE; ++j)
-      weighted[j] = weight * R[j];
-    for (int i = 0; i < SIZE; ++i)
-    {
-      sums.M[at (i, 0)] += weighted[i];
-      for (int j = 1; j <= i; ++j)
-        sums.M[at (i, j)] = xsimd::fma (weighted[i], R[j], sums.M[at (i, j)]);
-    }
-    if constexpr (CONSTRAINT == Constraint::HERMITE)
-      TermsT::addNormal (weight, d, n, sums.b);
-    if (CONSTRAINT == Constraint::HERMITE && nodes_.lambda == nullptr)
-      return;
-    B height = weights_.lambda (node);
-    if constexpr (CONSTRAINT == Constraint::FUNCTIONAL)
-      height -= dot (d, n); // eq. (2)
-    if constexpr (CONSTRAINT == Constraint::HERMITE)
-      height *= scale_ * scale_; // the others are the products of gradients, a degree of two lower
-    for (int j = 0; j < SIZE; ++j)
-      sums.b[j] = xsimd::fma (weighted[j], height, sums.b[j]);
-  }
-
   /** \brief From x_i - x to u: a term of degree p goes with ε^-p. */
   void
   scaleMoments ()
@@ -194,21 +148,52 @@ private:
     }
   }
 
+  /** \brief Calls visit (i, t, u) for each node to visit; t is 1 beyond the support.
+   *
+   * Distances are made for some nodes ahead: what follows from them would wait for them one by one.
+   */
+  template <typename VisitT>
+  void
+  visitNodes (VisitT visit) const
+  {
+    constexpr std::size_t AHEAD = B::size == 16 ? 8 : 4;
+    std::size_t i = 0;
+    for (; i + AHEAD <= support_.size (); i += AHEAD)
+      visitSome<AHEAD> (i, visit);
+    for (; i < support_.size (); ++i)
+      visitSome<1> (i, visit);
+  }
+
+  template <std::size_t N, typename VisitT>
+  [[gnu::always_inline]] void
+  visitSome (std::size_t i, VisitT &visit) const
+  {
+    B squared[N], t[N];
+    support_.template distances<N> (i, squared);
+    weights_.template shares<N> (squared, t);
+    for (std::size_t n = 0; n < N; ++n)
+    {
+      B u[3];
+      support_.offset (i + n, u);
+      for (int a = 0; a < 3; ++a)
+        u[a] *= scale_;
+      visit (i + n, t[n], u);
+    }
+  }
+
   /** \brief The residual of the fit at a node, by which the change of its weight moves f. */
   void
-  addResidual (std::size_t node, B *by_u, B &by_radius, B *direct)
+  addResidual (std::size_t i, B t, const B *d, B *by_u, B &by_radius, B *direct)
   {
-    B d[3], squared, t, n[3], R[SIZE];
-    const B weight = weights_.weight (node, d, squared, t);
-    for (int a = 0; a < 3; ++a)
-      d[a] *= scale_;
+    B n[3], R[SIZE];
+    const B weight = weights_.weightAt (i, t);
     if constexpr (SIZE == 1)
       for (int a = 0; a < 3; ++a)
         centroid_[a] = xsimd::fma (weight / weight_, d[a], centroid_[a]);
-    weights_.normal (node, n);
+    weights_.normal (i, n);
     TermsT::evaluate (d, t * t, R);
     const B share = combine<TermsT> (a_, R);
-    B height = weights_.lambda (node) * scale_;
+    B height = weights_.lambda (i) * scale_;
     if constexpr (CONSTRAINT == Constraint::FUNCTIONAL)
       height -= dot (d, n);
     B residual = share * (height - combine<TermsT> (c_, R));
@@ -223,8 +208,8 @@ private:
       residual += of_gradients;
       by_radius = xsimd::fma (weight, of_gradients, by_radius);
     }
-    const B force = weights_.slope (node, t) * residual;
-    by_radius = xsimd::fnma (B (0.5f) * t * t, force, by_radius);
+    const B force = weights_.slope (i, t) * residual;
+    by_radius = fnma (B (0.5f) * t * t, force, by_radius);
     for (int a = 0; a < 3; ++a)
       by_u[a] = xsimd::fma (force, d[a], by_u[a]);
     if constexpr (CONSTRAINT == Constraint::FUNCTIONAL)
@@ -237,15 +222,19 @@ private:
   subtractRaises (const B *radius_gradient, B *gradient) const
   {
     constexpr int LINEAR = SIZE > 1 ? 3 : 0;
-    auto any_raised = B (0.0f) > B (1.0f);
-    for (int j = 1; j <= LINEAR; ++j)
-      any_raised = any_raised || system_.raise (j) > B (0.0f);
-    if (!xsimd::any (any_raised))
-      return;
     B v[4][SIZE], of_pivot[4][3], of_spread[3];
+    bool is_none_raised = true;
     for (int j = 1; j <= LINEAR; ++j)
+    {
       system_.residualOfTerm (j, v[j]);
-    sumRaises (radius_gradient, v, of_pivot, of_spread);
+      of_pivot[j][0] = of_pivot[j][1] = of_pivot[j][2] = B (0.0f);
+      if (!xsimd::any (system_.raise (j) > B (0.0f)))
+        continue; // mostly all but the term across the surface
+      sumRaise (radius_gradient, v[j], of_pivot[j], of_spread);
+      is_none_raised = false;
+    }
+    if (is_none_raised)
+      return;
     B of_raise[4][3];
     for (int j = 1; j <= LINEAR; ++j)
     {
@@ -255,55 +244,55 @@ private:
       const B by_floor = (raise - slope * pivot) / floor;
       for (int a = 0; a < 3; ++a)
       {
-        B of_this = xsimd::fnma (B (2.0f) * pivot, radius_gradient[a], of_pivot[j][a]);
+        B of_this = fnma (B (2.0f) * pivot, radius_gradient[a], of_pivot[j][a]);
         for (int k = 1; k < j; ++k)
           of_this = xsimd::fma (v[j][k] * v[j][k], of_raise[k][a], of_this);
         const B of_floor = floor * (of_spread[a] / spread_ - B (2.0f) * radius_gradient[a]);
         of_this = slope * of_this + by_floor * of_floor + B (2.0f) * raise * radius_gradient[a];
         of_raise[j][a] = xsimd::select (is_raised, of_this, B (0.0f));
-        gradient[a] = xsimd::fnma (a_[j] * c_[j], of_raise[j][a], gradient[a]);
+        gradient[a] = fnma (a_[j] * c_[j], of_raise[j][a], gradient[a]);
       }
     }
   }
 
-  /** \brief Σ ∇w (v_j·R)² and Σ ∇w |u - centroid|². */
+  /** \brief Σ ∇w (v·R)² and Σ ∇w |u - centroid|². */
   void
-  sumRaises (const B *radius_gradient, const B (*v)[SIZE], B (*of_pivot)[3], B *of_spread) const
+  sumRaise (const B *radius_gradient, const B *v, B *of_pivot, B *of_spread) const
   {
+    B by_pivot[3], by_spread[3];
     for (int a = 0; a < 3; ++a)
-      of_pivot[1][a] = of_pivot[2][a] = of_pivot[3][a] = of_spread[a] = B (0.0f);
-    for (std::size_t i = 0; i < support_.size (); ++i)
+      by_pivot[a] = by_spread[a] = B (0.0f);
+    const auto add = [&] (std::size_t i, B t, const B *d)
     {
-      const std::size_t node = support_.node (i);
-      B d[3], squared, t, R[SIZE];
-      weights_.weight (node, d, squared, t);
-      const B slope = weights_.slope (node, t);
-      B change[3], away (0.0f);
+      B R[SIZE], away (0.0f);
+      const B slope = weights_.slope (i, t), squared = t * t;
+      TermsT::evaluate (d, squared, R);
+      const B height = combine<TermsT> (v, R), squared_height = height * height;
       for (int a = 0; a < 3; ++a)
       {
-        d[a] *= scale_;
-        change[a] = -slope * xsimd::fma (t * t, radius_gradient[a], d[a]);
         const B from = d[a] - centroid_[a];
         away = xsimd::fma (from, from, away);
       }
-      TermsT::evaluate (d, t * t, R);
       for (int a = 0; a < 3; ++a)
-        of_spread[a] = xsimd::fma (change[a], away, of_spread[a]);
-      for (int j = 1; j < (SIZE > 1 ? 4 : 1); ++j)
       {
-        const B height = combine<TermsT> (v[j], R);
-        for (int a = 0; a < 3; ++a)
-          of_pivot[j][a] = xsimd::fma (change[a], height * height, of_pivot[j][a]);
+        const B change = slope * xsimd::fma (squared, radius_gradient[a], d[a]);
+        by_pivot[a] = fnma (change, squared_height, by_pivot[a]);
+        by_spread[a] = fnma (change, away, by_spread[a]);
       }
+    };
+    visitNodes (add);
+    for (int a = 0; a < 3; ++a)
+    {
+      of_pivot[a] = by_pivot[a];
+      of_spread[a] = by_spread[a];
     }
   }
 
-  const Nodes &nodes_;
   const LaneSupport<B> &support_;
   LaneWeights<B, KernelT> weights_;
   B scale_;
-  LaneReach<B> reach_;
-  LaneSystem<TermsT, B> system_;
+  const LaneReach<B> &reach_;
+  LaneSystem<TermsT, B> &system_;
   B centroid_[3], spread_, weight_;
   B c_[SIZE]; // M^-1 b
   B a_[SIZE]; // M^-1 R(x)

@@ -23,6 +23,27 @@ struct PaperKernel
     return s * s * s * xsimd::fma (t, xsimd::fma (B (6.0f), t, B (3.0f)), B (1.0f));
   }
 
+  /** \brief From t to the weights of N nodes at once. */
+  template <std::size_t N>
+  [[gnu::always_inline]] void
+  weights (B *t) const
+  {
+    const B one (1.0f), three (3.0f), six (6.0f);
+    B s[N], p[N];
+    for (std::size_t n = 0; n < N; ++n)
+      p[n] = xsimd::fma (six, t[n], three);
+    for (std::size_t n = 0; n < N; ++n)
+      s[n] = one - t[n];
+    for (std::size_t n = 0; n < N; ++n)
+      p[n] = xsimd::fma (t[n], p[n], one);
+    for (std::size_t n = 0; n < N; ++n)
+      t[n] = s[n] * s[n];
+    for (std::size_t n = 0; n < N; ++n)
+      p[n] *= s[n];
+    for (std::size_t n = 0; n < N; ++n)
+      t[n] *= p[n];
+  }
+
   /** \brief dw/dt / t. */
   B
   slope (B t) const
@@ -58,6 +79,14 @@ public:
         break;
     }
     return PaperKernel<B> (kernel_).weight (t);
+  }
+
+  template <std::size_t N>
+  void
+  weights (B *t) const
+  {
+    for (std::size_t n = 0; n < N; ++n)
+      t[n] = weight (t[n]);
   }
 
   B

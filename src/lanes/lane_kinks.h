@@ -175,7 +175,7 @@ public:
     const B share = balance (s) * B (1.0f / LEAST_BALANCE);
     const B rise = xsimd::select (share < B (1.0f), B (6.0f / LEAST_BALANCE) * share * (B (1.0f) - share), B (0.0f));
     const B by_balance = B (-2.0f * FADE) * left / (p * p * p) * rise;
-    return fade / weight_ * of_all + by_balance * xsimd::fnma (balance (s), of_all, of_side) +
+    return fade / weight_ * of_all + by_balance * fnma (balance (s), of_all, of_side) +
            B (4.0f) * fade * radius_gradient;
   }
 

@@ -1,23 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include "lane_vector.h"
 #include "lanes.h"
-
-#include <xsimd/xsimd.hpp>
-
-#include <type_traits>
 
 namespace erkpa::lanes
 {
-
-/** \brief Whether the instruction set can close up the lanes that a mask leaves. */
-template <typename B>
-constexpr bool CAN_COMPRESS =
-#ifdef __AVX512F__
-    std::is_same_v<B, xsimd::batch<float, xsimd::avx512f>>;
-#else
-    false;
-#endif
 
 #ifdef __AVX512F__
 /** \brief Appends to a list the numbers from \a first on of the lanes in a mask. */
@@ -49,7 +37,7 @@ std::size_t
 appendWhere (B margin, std::size_t first, std::size_t count, std::uint32_t *list)
 {
 #ifdef __AVX512F__
-  if constexpr (CAN_COMPRESS<B>)
+  if constexpr (IS_WIDEST<B>)
     return appendLanes<B> (_mm512_mask_cmp_ps_mask (firstLanes<B> (count), margin, _mm512_setzero_ps (), _CMP_GE_OQ),
                            first, list);
 #endif
@@ -64,6 +52,38 @@ appendWhere (B margin, std::size_t first, std::size_t count, std::uint32_t *list
   return appended;
 }
 
+/** \brief Copies what an array holds at some places, which ascend; those that follow each other at once. */
+template <typename B>
+void
+pick (const float *from, const std::uint32_t *places, std::size_t count, float *picked)
+{
+  constexpr std::size_t WIDTH = B::size;
+  std::size_t i = 0;
+  for (; i + WIDTH <= count; i += WIDTH)
+    if (places[i + WIDTH - 1] - places[i] == WIDTH - 1)
+      B::load_unaligned (from + places[i]).store_unaligned (picked + i);
+    else
+      for (std::size_t j = i; j < i + WIDTH; ++j)
+        picked[j] = from[places[j]];
+  for (; i < count; ++i)
+    picked[i] = from[places[i]];
+}
+
+#ifdef __AVX512F__
+/** \brief Closes up what arrays hold, from \a first on, in the lanes where \a margin is not negative, as appendWhere ()
+ * does it with their numbers. */
+template <typename B>
+void
+closeUpWhere (B margin, std::size_t first, std::size_t count, const float *const *from, std::size_t arrays,
+              float *const *to, std::size_t place)
+{
+  const __mmask16 there = firstLanes<B> (count);
+  const __mmask16 kept = _mm512_mask_cmp_ps_mask (there, margin, _mm512_setzero_ps (), _CMP_GE_OQ);
+  for (std::size_t a = 0; a < arrays; ++a)
+    _mm512_storeu_ps (to[a] + place, _mm512_maskz_compress_ps (kept, _mm512_maskz_loadu_ps (there, from[a] + first)));
+}
+#endif
+
 /** \brief See Search::findWithin. */
 template <typename B>
 std::size_t
@@ -73,7 +93,7 @@ findWithin (const Cloud &cloud, const Stretch *stretches, std::size_t count, con
   std::size_t kept = 0;
   for (const Stretch *stretch = stretches; stretch != stretches + count; ++stretch)
 #ifdef __AVX512F__
-    if constexpr (CAN_COMPRESS<B>)
+    if constexpr (IS_WIDEST<B>)
       for (std::size_t first = stretch->first; first < stretch->last; first += 16)
       {
         const __mmask16 lanes = firstLanes<B> (stretch->last - first);

@@ -12,23 +12,44 @@ class LaneSupport
 {
 public:
   static constexpr std::size_t WIDTH = B::size;
+  static constexpr std::size_t NORMAL = 3, LAMBDA = 6, CONFIDENCE = 7; // columns
+  static constexpr std::size_t LARGEST = 3; // see largestWithin ()
 
-  LaneSupport (const Settings &settings, const Nodes &nodes, const Points &points, std::size_t first,
-               const Scratch &scratch)
-      : nodes_ (nodes), list_ (scratch.list), rows_ (scratch.rows), k_ (static_cast<float> (settings.k)),
-        is_limited_ (settings.limited), x_{B::load_unaligned (points.x + first), B::load_unaligned (points.y + first),
-                                           B::load_unaligned (points.z + first)},
-        radius_ (B::load_unaligned (points.radius + first))
+  /** \brief Take up the points of some lanes.
+   * \param[in] first place of the evaluation point in the first lane
+   */
+  void
+  moveTo (const Settings &settings, const Nodes &nodes, const Points &points, std::size_t first, const Scratch &scratch)
   {
+    nodes_ = &nodes;
+    list_ = scratch.list;
+    rows_ = scratch.rows;
+    const std::size_t stride = nodes.count + MAX_WIDTH;
+    for (std::size_t column = 0; column < Scratch::COLUMNS; ++column)
+      near_[column] = scratch.near + column * stride;
+    k_ = static_cast<float> (settings.k);
+    is_limited_ = settings.limited;
+    const float *const positions[] = {points.x, points.y, points.z};
+    for (int a = 0; a < 3; ++a)
+      x_[a] = B::load_unaligned (positions[a] + first);
+    radius_ = B::load_unaligned (points.radius + first);
     kth_ = radius_ * radius_;
+    at_limit_ = short_ = B (0.0f);
     if (settings.k > 0)
       findNearest (B::load_unaligned (points.guess + first));
-    else
-    {
-      listWithin (nodes.count);
-      is_listed_ = true;
-    }
     inverse_ = B (1.0f) / radius_;
+  }
+
+  /** \brief List the nodes that may lie in the support of a lane, the same for all of some supports. */
+  static void
+  listNodes (LaneSupport *supports, std::size_t count)
+  {
+    supports[0].listWithin (supports, count, supports[0].nodes_->count, Scratch::COLUMNS);
+    for (std::size_t s = 1; s < count; ++s)
+    {
+      supports[s].listed_ = supports[0].listed_;
+      supports[s].on_surface_ = supports[0].on_surface_;
+    }
   }
 
   /** \brief ε. */
@@ -63,23 +84,69 @@ public:
   std::size_t
   size () const
   {
-    return is_listed_ ? listed_ : nodes_.count;
+    return listed_;
   }
 
   std::size_t
   node (std::size_t i) const
   {
-    return is_listed_ ? list_[i] : i;
+    return list_[i];
   }
 
-  /** \brief x_i - x and its square. */
-  B
-  offset (std::size_t node, B *d) const
+  /** \brief An array of what the nodes to visit have: see Scratch; null where none has it. */
+  const float *
+  near (std::size_t column) const
   {
-    d[0] = B (nodes_.x[node]) - x_[0];
-    d[1] = B (nodes_.y[node]) - x_[1];
-    d[2] = B (nodes_.z[node]) - x_[2];
-    return xsimd::fma (d[2], d[2], xsimd::fma (d[1], d[1], d[0] * d[0]));
+    const bool is_there = column < LAMBDA || (column == LAMBDA ? nodes_->lambda : nodes_->confidence) != nullptr;
+    return is_there ? near_[column] : nullptr;
+  }
+
+  /** \brief x_i - x of the i-th node to visit, and its square. */
+  [[gnu::always_inline]] B
+  offset (std::size_t i, B *d) const
+  {
+    for (std::size_t a = 0; a < 3; ++a)
+      d[a] = B (near_[a][i]) - x_[a];
+    return squaredLength (d);
+  }
+
+  B
+  x (int axis) const
+  {
+    return x_[axis];
+  }
+
+  /** \brief |x_i - x|² of N nodes from the i-th to visit on. */
+  template <std::size_t N>
+  [[gnu::always_inline]] void
+  distances (std::size_t i, B *squared) const
+  {
+    for (std::size_t n = 0; n < N; ++n)
+    {
+      B d[3];
+      squared[n] = offset (i + n, d);
+    }
+  }
+
+  /** \brief How many of the nodes to visit, the first ones, lie on the surface. */
+  std::size_t
+  onSurface () const
+  {
+    return on_surface_;
+  }
+
+  /** \brief The first node at a squared distance; zero where there is none. */
+  B
+  nodeAt (B squared) const
+  {
+    B node (0.0f);
+    for (std::size_t i = onSurface (); i-- > 0;)
+    {
+      B found;
+      distances<1> (i, &found);
+      node = xsimd::select (found == squared, B (static_cast<float> (list_[i])), node);
+    }
+    return node;
   }
 
   /** \brief ∇ε where it is the distance to the k-th node.
@@ -88,79 +155,104 @@ public:
   void
   radiusGradient (B *gradient) const
   {
+    float nodes[WIDTH], places[WIDTH];
+    nodeAt (kth_).store_unaligned (nodes);
+    const float *const positions[] = {nodes_->x, nodes_->y, nodes_->z};
     for (int a = 0; a < 3; ++a)
-      gradient[a] = xsimd::select (at_limit_ > B (0.5f), gradient[a], B (0.0f));
-    auto is_found = at_limit_ > B (0.5f);
-    for (std::size_t i = 0; i < listed_; ++i)
     {
-      B d[3];
-      const B squared = offset (list_[i], d);
-      const auto is_kth = (squared >= kth_) && !is_found && B (list_[i] < nodes_.on_surface ? 1.0f : 0.0f) > B (0.5f) &&
-                          squared <= kth_;
-      for (int a = 0; a < 3; ++a)
-        gradient[a] = xsimd::select (is_kth, -d[a] * inverse_, gradient[a]);
-      is_found = is_found || is_kth;
+      for (std::size_t lane = 0; lane < WIDTH; ++lane)
+        places[lane] = positions[a][static_cast<std::size_t> (nodes[lane])];
+      const B towards = (x_[a] - B::load_unaligned (places)) * inverse_;
+      gradient[a] = xsimd::select (at_limit_ > B (0.5f), gradient[a], towards);
     }
   }
 
 private:
-  /** \brief Lists those of the first \a count value points that may lie within the bounds of some lane.
+  /** \brief More than zero, so that 1/√ of it is finite. */
+  static B
+  squaredLength (const B *d)
+  {
+    constexpr float LEAST = 1e-30f;
+    return xsimd::fma (d[2], d[2], xsimd::fma (d[1], d[1], xsimd::fma (d[0], d[0], B (LEAST))));
+  }
+
+  /** \brief Lists those of the first \a value_points that may lie within the bounds of some lane of some supports.
    *
    * Those within a ball around all of them: for once the lanes are nodes, for there are many more of these.
    */
   void
-  listWithin (std::size_t count)
+  listWithin (const LaneSupport *supports, std::size_t count, std::size_t value_points, std::size_t columns)
   {
+    const float *const all[Scratch::COLUMNS] = {nodes_->x,  nodes_->y,  nodes_->z,      nodes_->nx,
+                                                nodes_->ny, nodes_->nz, nodes_->lambda, nodes_->confidence};
+    const float *from[Scratch::COLUMNS];
+    float *to[Scratch::COLUMNS];
+    std::size_t arrays = 0;
+    for (std::size_t column = 0; column < columns; ++column)
+      if (all[column] != nullptr)
+      {
+        from[arrays] = all[column];
+        to[arrays++] = near_[column];
+      }
     float middle[3], reach = 0.0f;
-    findBall (middle, reach);
+    findBall (supports, count, middle, reach);
     const B limit (reach * reach);
     listed_ = 0;
-    for (std::size_t first = 0; first < count; first += WIDTH)
+    for (std::size_t first = 0; first < value_points; first += WIDTH)
     {
-      const B dx = B::load_unaligned (nodes_.x + first) - B (middle[0]);
-      const B dy = B::load_unaligned (nodes_.y + first) - B (middle[1]);
-      const B dz = B::load_unaligned (nodes_.z + first) - B (middle[2]);
-      const B margin = limit - xsimd::fma (dz, dz, xsimd::fma (dy, dy, dx * dx));
-      listed_ += appendWhere (margin, first, count - first, list_ + listed_);
+      const B d[] = {B::load_unaligned (nodes_->x + first) - B (middle[0]),
+                     B::load_unaligned (nodes_->y + first) - B (middle[1]),
+                     B::load_unaligned (nodes_->z + first) - B (middle[2])};
+      const B margin = limit - squaredLength (d);
+#ifdef __AVX512F__
+      if constexpr (IS_WIDEST<B>)
+        closeUpWhere (margin, first, value_points - first, from, arrays, to, listed_);
+#endif
+      listed_ += appendWhere (margin, first, value_points - first, list_ + listed_);
     }
+    for (std::size_t a = 0; a < (IS_WIDEST<B> ? 0 : arrays); ++a)
+      pick<B> (from[a], list_, listed_, to[a]);
+    for (on_surface_ = listed_; on_surface_ > 0 && list_[on_surface_ - 1] >= nodes_->on_surface;)
+      --on_surface_;
   }
 
   /** \brief The squared distances of the listed nodes, a row for each. */
   void
   measureDistances ()
   {
-    for (std::size_t i = 0; i < listed_; ++i)
+    // The compiler cannot know that the rows do not lie where these are.
+    float *const rows = rows_;
+    const float *const near[] = {near_[0], near_[1], near_[2]};
+    const B x[] = {x_[0], x_[1], x_[2]};
+    for (std::size_t i = 0, count = listed_; i < count; ++i)
     {
-      B d[3];
-      offset (list_[i], d).store_unaligned (rows_ + WIDTH * i);
+      const B d[] = {B (near[0][i]) - x[0], B (near[1][i]) - x[1], B (near[2][i]) - x[2]};
+      squaredLength (d).store_unaligned (rows + WIDTH * i);
     }
   }
 
   /** \brief A ball that holds those around the points with the bounds as radii. */
-  void
-  findBall (float *middle, float &reach) const
+  static void
+  findBall (const LaneSupport *supports, std::size_t count, float *middle, float &reach)
   {
-    float points[3][WIDTH], bounds[WIDTH];
-    radius_.store_unaligned (bounds);
+    // The middle of the first and the last one, which are far apart where lanes are nodes of a block.
     for (int a = 0; a < 3; ++a)
     {
-      x_[a].store_unaligned (points[a]);
-      float low = points[a][0], high = low;
-      for (std::size_t i = 1; i < WIDTH; ++i)
-      {
-        low = points[a][i] < low ? points[a][i] : low;
-        high = points[a][i] > high ? points[a][i] : high;
-      }
-      middle[a] = 0.5f * (low + high);
+      float first[WIDTH], last[WIDTH];
+      supports[0].x_[a].store_unaligned (first);
+      supports[count - 1].x_[a].store_unaligned (last);
+      middle[a] = 0.5f * (first[0] + last[WIDTH - 1]);
     }
-    for (std::size_t i = 0; i < WIDTH; ++i)
+    B needed (0.0f);
+    for (std::size_t i = 0; i < count; ++i)
     {
-      float squared = 0.0f;
-      for (int a = 0; a < 3; ++a)
-        squared += (points[a][i] - middle[a]) * (points[a][i] - middle[a]);
-      const float needed = (bounds[i] + __builtin_sqrtf (squared)) * (1.0f + 1e-5f);
-      reach = needed > reach ? needed : reach;
+      const B *const x = supports[i].x_, from[] = {x[0] - B (middle[0]), x[1] - B (middle[1]), x[2] - B (middle[2])};
+      needed = xsimd::max (needed, supports[i].radius_ + xsimd::sqrt (squaredLength (from)));
     }
+    float reaches[WIDTH];
+    (needed * B (1.0f + 1e-5f)).store_unaligned (reaches);
+    for (const float one : reaches)
+      reach = one > reach ? one : reach;
   }
 
   B
@@ -191,31 +283,32 @@ private:
   /** \brief ε = distance to the k-th node, from a bound of it and a guess.
    *
    * The number of nodes within a distance grows about as its square. The bounds close in on a square within which there
-   * are just k; where distances are equal there is none, and single steps from node to node find the k-th.
+   * are k or little more, of which the largest ones tell the k-th; where many distances are equal, single steps from
+   * node to node find it.
    */
   void
   findNearest (B guess)
   {
     constexpr int STEPS = 10, EVEN = 5;
     B low (0.0f), high = radius_ * radius_ * B (1.0f + 1e-5f);
-    listWithin (nodes_.on_surface);
+    listWithin (this, 1, nodes_->on_surface, 3);
     measureDistances ();
     B in_low (0.0f), in_high = countWithin (high);
     B middle = xsimd::min (guess * guess, high);
-    const B k (k_);
-    for (int step = 0; step < STEPS && xsimd::any (in_high > k); ++step)
+    const B k (k_), enough (k_ + static_cast<float> (LARGEST - 1)), wanted (k_ + 0.5f * static_cast<float> (LARGEST));
+    for (int step = 0; step < STEPS && xsimd::any (in_high > enough); ++step)
     {
       const B count = countWithin (middle);
-      const auto enough = count >= k;
-      high = xsimd::select (enough, middle, high);
-      in_high = xsimd::select (enough, count, in_high);
-      low = xsimd::select (enough, low, middle);
-      in_low = xsimd::select (enough, in_low, count);
-      const B share = step < EVEN ? (k + B (0.4f) - in_low) / xsimd::max (in_high - in_low, B (1.0f)) : B (0.5f);
-      middle = xsimd::fma (share, high - low, low);
-      middle = xsimd::select (in_high > k, middle, high);
+      const auto is_enough = count >= k;
+      high = xsimd::select (is_enough, middle, high);
+      in_high = xsimd::select (is_enough, count, in_high);
+      low = xsimd::select (is_enough, low, middle);
+      in_low = xsimd::select (is_enough, in_low, count);
+      const B share = step < EVEN ? (wanted - in_low) / xsimd::max (in_high - in_low, B (1.0f)) : B (0.5f);
+      middle = xsimd::fma (xsimd::min (share, B (0.9f)), high - low, low);
+      middle = xsimd::select (in_high > enough, middle, high);
     }
-    kth_ = largestWithin (high);
+    kth_ = largestWithin (high, in_high - k);
     if (!is_limited_)
       short_ = xsimd::select (in_high < k, B (1.0f), B (0.0f));
     else
@@ -223,27 +316,29 @@ private:
       at_limit_ = xsimd::select (in_high < k, B (1.0f), B (0.0f));
       kth_ = xsimd::select (in_high < k, radius_ * radius_, kth_);
     }
-    if (xsimd::any (in_high > k))
-      stepToKth (low, in_low, in_high > k);
+    if (xsimd::any (in_high > enough))
+      stepToKth (low, in_low, in_high > enough);
     radius_ = xsimd::sqrt (kth_);
-    shorten ();
   }
 
+  /** \brief The largest of the rows within a bound, or the next one, or that after it, by their number above. */
   B
-  largestWithin (B bound) const
+  largestWithin (B bound, B above) const
   {
-    B largest (0.0f), others (0.0f);
-    const auto take = [&] (std::size_t i, B &most)
-    { most = xsimd::select (row (i) <= bound, xsimd::max (most, row (i)), most); };
-    std::size_t i = 0;
-    for (; i + 2 <= listed_; i += 2)
+    static_assert (LARGEST == 3);
+    B largest[LARGEST] = {B (0.0f), B (0.0f), B (0.0f)};
+    for (std::size_t i = 0; i < listed_; ++i)
     {
-      take (i, largest);
-      take (i + 1, others);
+      B next = xsimd::select (row (i) <= bound, row (i), B (0.0f));
+      for (B &one : largest)
+      {
+        const B less = xsimd::min (one, next);
+        one = xsimd::max (one, next);
+        next = less;
+      }
     }
-    if (i < listed_)
-      take (i, largest);
-    return xsimd::max (largest, others);
+    const B of_two = xsimd::select (above > B (0.5f), largest[1], largest[0]);
+    return xsimd::select (above > B (1.5f), largest[2], of_two);
   }
 
   template <typename MaskT>
@@ -265,37 +360,17 @@ private:
     }
   }
 
-  /** \brief Keeps in the list what lies in the support of any lane, and adds the off-surface points. */
-  void
-  shorten ()
-  {
-    std::size_t kept = 0;
-    for (std::size_t i = 0; i < listed_; ++i)
-    {
-      list_[kept] = list_[i];
-      kept += xsimd::any (row (i) <= kth_) ? 1 : 0; // the k-th itself is asked for again
-    }
-    for (std::size_t i = nodes_.on_surface; i < nodes_.count; ++i)
-    {
-      B d[3];
-      list_[kept] = static_cast<std::uint32_t> (i);
-      kept += xsimd::any (offset (i, d) < kth_) ? 1 : 0;
-    }
-    listed_ = kept;
-    is_listed_ = true;
-  }
-
-  const Nodes &nodes_;
+  const Nodes *nodes_;
   std::uint32_t *list_;
+  float *near_[Scratch::COLUMNS];
   float *rows_;
-  std::size_t listed_ = 0;
-  bool is_listed_ = false;
+  std::size_t listed_ = 0, on_surface_ = 0;
   float k_;
   bool is_limited_;
   B x_[3];
   B radius_, inverse_, kth_;
-  B at_limit_ = B (0.0f); // 1 where ε is Points::radius
-  B short_ = B (0.0f);    // 1 where it is beyond
+  B at_limit_;  // 1 where ε is Points::radius
+  B short_;     // 1 where it is beyond
 };
 
 } // namespace erkpa::lanes

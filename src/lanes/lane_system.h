@@ -18,34 +18,28 @@ public:
   B M[MOMENTS];
   B b[SIZE];
 
-  LaneSystem ()
-  {
-    for (B &moment : M)
-      moment = B (0.0f);
-    for (B &right : b)
-      right = B (0.0f);
-  }
-
   /** \brief M = L D L^T; pivots below their floors are raised.
    * \param[in] spread Σ w |u - centroid|²
    */
   void
   factorize (Constraint constraint, B spread)
   {
-    const B weight = M[0];
+    const B weight = M[0], one (1.0f);
+#pragma GCC unroll 10
     for (int j = 0; j < SIZE; ++j)
     {
       floors_[j] = floorOf (constraint, TermsT::degree (j), weight, spread);
       raisePivot (j);
-      const B inverse = B (1.0f) / M[at (j, j)];
-      for (int k = j + 1; k < SIZE; ++k)
+      inverses_[j] = one / M[at (j, j)];
+      B factors[SIZE];
+      for (int i = j + 1; i < SIZE; ++i)
       {
-        const B factor = M[at (k, j)] * inverse;
-        for (int i = k; i < SIZE; ++i)
-          M[at (i, k)] = xsimd::fnma (M[at (i, j)], factor, M[at (i, k)]);
+        factors[i] = M[at (i, j)] * inverses_[j];
+        for (int k = j + 1; k <= i; ++k)
+          M[at (i, k)] = fnma (M[at (i, j)], factors[k], M[at (i, k)]);
       }
       for (int i = j + 1; i < SIZE; ++i)
-        M[at (i, j)] *= inverse;
+        M[at (i, j)] = factors[i];
     }
   }
 
@@ -55,9 +49,9 @@ public:
   {
     for (int j = 0; j < SIZE; ++j)
       for (int i = j + 1; i < SIZE; ++i)
-        v[i] = xsimd::fnma (M[at (i, j)], v[j], v[i]);
+        v[i] = fnma (M[at (i, j)], v[j], v[i]);
     for (int j = 0; j < SIZE; ++j)
-      v[j] /= M[at (j, j)];
+      v[j] *= inverses_[j];
     backSubstitute (v, SIZE - 1);
   }
 
@@ -115,7 +109,11 @@ private:
     B pivot = M[at (j, j)];
     const B floor = floors_[j], zero (0.0f), one (1.0f);
     pivots_[j] = pivot;
+    raises_[j] = slopes_[j] = zero;
+    M[at (j, j)] = xsimd::select (pivot > zero, pivot, one);
     const auto is_low = pivot < floor;
+    if (!xsimd::any (is_low))
+      return;
     const B share = xsimd::max (pivot / xsimd::select (floor > zero, floor, one), B (LEAST));
     raises_[j] = xsimd::select (is_low, floor * (one - share) * (one - share) / share, zero);
     slopes_[j] = xsimd::select (is_low && share > B (LEAST), one - one / (share * share), zero);
@@ -128,9 +126,10 @@ private:
   {
     for (int j = last - 1; j >= 0; --j)
       for (int i = j + 1; i <= last; ++i)
-        v[j] = xsimd::fnma (M[at (i, j)], v[i], v[j]);
+        v[j] = fnma (M[at (i, j)], v[i], v[j]);
   }
 
+  B inverses_[SIZE]; // 1 / D
   B pivots_[SIZE], floors_[SIZE], raises_[SIZE], slopes_[SIZE];
 };
 

@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include "lane_vector.h"
 #include "lanes.h"
-
-#include <xsimd/xsimd.hpp>
 
 namespace erkpa::lanes
 {
@@ -30,6 +29,12 @@ struct Terms<B, Basis::CONSTANT>
     return 0;
   }
 
+  static constexpr int
+  power (int, int)
+  {
+    return 0;
+  }
+
   static void
   evaluate (const B *, B, B *R)
   {
@@ -40,6 +45,11 @@ struct Terms<B, Basis::CONSTANT>
   slopes (const B *, const B *, B *G)
   {
     G[0] = G[1] = G[2] = B (0.0f);
+  }
+
+  static void
+  shift (const B *, B *)
+  {
   }
 
   static void
@@ -64,6 +74,13 @@ struct Terms<B, Basis::LINEAR>
     return term == 0 ? 0 : 1;
   }
 
+  /** \brief With which power a factor, x, y, z or q, is in a term. */
+  static constexpr int
+  power (int term, int factor)
+  {
+    return term == 1 + factor ? 1 : 0;
+  }
+
   static void
   evaluate (const B *u, B, B *R)
   {
@@ -78,6 +95,14 @@ struct Terms<B, Basis::LINEAR>
   {
     for (int a = 0; a < 3; ++a)
       G[a] = c[1 + a];
+  }
+
+  /** \brief R (u - s) from R (u), or a sum of such. */
+  static void
+  shift (const B *s, B *R)
+  {
+    for (int a = 0; a < 3; ++a)
+      R[1 + a] = fnma (s[a], R[0], R[1 + a]);
   }
 
   /** \brief Σ w ∂R ∂R^T, which follows from Σ w R R^T. */
@@ -108,6 +133,12 @@ struct Terms<B, Basis::SPHERICAL>
     return term == 4 ? 2 : Terms<B, Basis::LINEAR>::degree (term);
   }
 
+  static constexpr int
+  power (int term, int factor)
+  {
+    return term == 1 + factor ? 1 : 0;
+  }
+
   static void
   evaluate (const B *u, B q, B *R)
   {
@@ -121,6 +152,14 @@ struct Terms<B, Basis::SPHERICAL>
     const B twice = c[4] + c[4];
     for (int a = 0; a < 3; ++a)
       G[a] = xsimd::fma (twice, u[a], c[1 + a]);
+  }
+
+  static void
+  shift (const B *s, B *R)
+  {
+    Terms<B, Basis::LINEAR>::shift (s, R);
+    for (int a = 0; a < 3; ++a)
+      R[4] = fnma (s[a], R[1 + a] + xsimd::fma (s[a], R[0], R[1 + a]), R[4]);
   }
 
   static void
@@ -163,6 +202,13 @@ struct Terms<B, Basis::QUADRATIC>
         visit (term++, a, b);
   }
 
+  static constexpr int
+  power (int term, int factor)
+  {
+    constexpr int SQUARES[6][3] = {{2, 0, 0}, {1, 1, 0}, {1, 0, 1}, {0, 2, 0}, {0, 1, 1}, {0, 0, 2}};
+    return factor == 3 ? 0 : term >= 4 ? SQUARES[term - 4][factor] : term == 1 + factor ? 1 : 0;
+  }
+
   static void
   evaluate (const B *u, B q, B *R)
   {
@@ -181,6 +227,18 @@ struct Terms<B, Basis::QUADRATIC>
           G[a] = xsimd::fma (c[term], u[b], G[a]);
           G[b] = xsimd::fma (c[term], u[a], G[b]);
         });
+  }
+
+  static void
+  shift (const B *s, B *R)
+  {
+    visitSquares (
+        [&] (int term, int a, int b)
+        {
+          const B lower = fnma (s[a], R[0], R[1 + a]);
+          R[term] = fnma (s[a], R[1 + b], fnma (s[b], lower, R[term]));
+        });
+    Terms<B, Basis::LINEAR>::shift (s, R);
   }
 
   static void

@@ -139,12 +139,14 @@ struct Samples
   float *attributes; ///< channel after channel
 };
 
-/** \brief Memory for one call: MAX_WIDTH more places than there are nodes, and rows of MAX_WIDTH floats for distances.
- */
+/** \brief Memory for one call. */
 struct Scratch
 {
-  std::uint32_t *list;
-  float *rows; ///< MAX_WIDTH · (count + 1)
+  static constexpr std::size_t COLUMNS = 8; ///< what a node has: position, normal, λ, confidence
+
+  std::uint32_t *list; ///< MAX_WIDTH more places than there are nodes
+  float *near;         ///< COLUMNS times as many
+  float *rows;         ///< rows of MAX_WIDTH floats, as many as nodes; best at the start of a cache line
 };
 
 /** \brief Points among which is searched. */

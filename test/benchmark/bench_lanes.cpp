@@ -16,12 +16,21 @@ namespace
 
 using bench::LaneCase;
 using erkpa::lanes::Basis;
+using erkpa::lanes::Constraint;
 using erkpa::lanes::Engine;
 
-constexpr std::pair<const char *, Basis> BASES[] = {{"constant", Basis::CONSTANT},
-                                                    {"linear", Basis::LINEAR},
-                                                    {"spherical", Basis::SPHERICAL},
-                                                    {"quadratic", Basis::QUADRATIC}};
+struct NamedFit
+{
+  const char *name;
+  Basis basis;
+  Constraint constraint;
+};
+
+constexpr NamedFit FITS[] = {{"constant", Basis::CONSTANT, Constraint::FUNCTIONAL},
+                             {"linear", Basis::LINEAR, Constraint::HERMITE},
+                             {"linear_functional", Basis::LINEAR, Constraint::FUNCTIONAL},
+                             {"spherical", Basis::SPHERICAL, Constraint::HERMITE},
+                             {"quadratic", Basis::QUADRATIC, Constraint::HERMITE}};
 
 /** \brief Node evaluations as the benchmark's items, and the share of the peak that their operations make. */
 void
@@ -98,13 +107,13 @@ addLanes (const Engine &engine)
     benchmark::RegisterBenchmark (name.c_str (),
                                   [&engine, what] (benchmark::State &state) { measureLanes (state, engine, what); });
   };
-  for (const auto &[name, basis] : BASES)
+  for (const auto &[name, basis, constraint] : FITS)
     for (const bool gradients : {false, true})
     {
       for (const std::size_t nodes : {20, 40, 100, 400, 3000})
-        add (name, "nodes:" + std::to_string (nodes), {basis, 0, nodes, gradients});
+        add (name, "nodes:" + std::to_string (nodes), {basis, constraint, 0, nodes, gradients});
       for (const int k : {20, 40})
-        add (name, "k:" + std::to_string (k), {basis, k, 0, gradients});
+        add (name, "k:" + std::to_string (k), {basis, constraint, k, 0, gradients});
     }
 }
 

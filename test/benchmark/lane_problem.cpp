@@ -68,7 +68,7 @@ flopsPerPair (Basis basis, bool gradients)
 LaneProblem::LaneProblem (const LaneCase &what)
 {
   settings_.basis = what.basis;
-  settings_.constraint = erkpa::lanes::Constraint::HERMITE;
+  settings_.constraint = what.constraint;
   settings_.kernel = erkpa::lanes::Kernel::PAPER;
   settings_.k = what.k;
   settings_.gradients = what.gradients;
@@ -112,7 +112,8 @@ LaneProblem::makeNodes (std::size_t count, double extent)
     }
   }
   list_.resize (count + MAX_WIDTH);
-  rows_.resize (MAX_WIDTH * (count + 1));
+  near_.resize (erkpa::lanes::Scratch::COLUMNS * list_.size ());
+  rows_.resize (MAX_WIDTH * count);
 }
 
 /** \brief A grid of points around the middle, with the radii that are known beforehand. */
@@ -165,7 +166,7 @@ LaneProblem::evaluate (const erkpa::lanes::Engine &engine)
   for (std::size_t a = 0; a < 3; ++a)
     samples.gradient[a] = gradients_[a].data ();
   samples.border_offset = border_offsets_.data ();
-  engine.evaluate (settings_, nodes, points, erkpa::lanes::SharpSurfaces{}, {list_.data (), rows_.data ()}, samples);
+  engine.evaluate (settings_, nodes, points, erkpa::lanes::SharpSurfaces{}, {list_.data (), near_.data (), rows_.data ()}, samples);
 }
 
 std::size_t

@@ -37,6 +37,7 @@ flopsPerPair (erkpa::lanes::Basis basis, bool gradients);
 struct LaneCase
 {
   erkpa::lanes::Basis basis;
+  erkpa::lanes::Constraint constraint;
   int k;             ///< neighbours in the support; 0 = constant radius, and all nodes are in all supports
   std::size_t nodes; ///< with constant radius
   bool gradients;
@@ -84,7 +85,7 @@ private:
   std::vector<std::uint8_t> in_reach_;
   std::vector<erkpa::lanes::State> states_;
   std::vector<std::uint32_t> supports_, list_;
-  std::vector<float> rows_;
+  std::vector<float> near_, rows_;
 };
 
 } // namespace bench
