@@ -67,7 +67,7 @@ BlockField::gather (const Eigen::Vector3d &center, double extent)
   has_separations_ = faces_.gather (center_, all);
   const bool by_nearest = field_.supportSize ().kind () == SupportSize::Kind::NEAREST;
   enrichment_.gather (center_, (by_nearest ? center_radius_ + 2.0 * all : reach_) + field_.largestOffset ());
-  nodes_.copy ();
+  nodes_.copyWithin (reach_);
   return true;
 }
 
@@ -80,7 +80,8 @@ BlockField::findReach (const Eigen::Vector3d &center, double extent)
   {
     center_radius_ = size.radiusAt (center);
     const double stretch = size.kind () == SupportSize::Kind::FUNCTION ? 2.0 : 1.0;
-    findNodes (center, std::max (center_radius_, 0.0) + stretch * extent);
+    reach_ = std::max (center_radius_, 0.0) + stretch * extent;
+    nodes_.lookAround (center, reach_);
     return true;
   }
   constexpr double FARTHEST = 1e18; // its square is still a float
@@ -88,7 +89,7 @@ BlockField::findReach (const Eigen::Vector3d &center, double extent)
   double guess = 1.15 * (center_radius_ > 0.0 ? std::min (center_radius_, 2.0 * unit_) : unit_);
   for (; center.norm () < FARTHEST && guess < FARTHEST; guess *= 2.0)
   {
-    findNodes (center, trustedRadius (guess, extent) + extent);
+    nodes_.find (center, trustedRadius (guess, extent) + extent);
     if (nodes_.count () < k)
       continue;
     center_radius_ = nodes_.boundOfKth (k, guess);
@@ -96,7 +97,6 @@ BlockField::findReach (const Eigen::Vector3d &center, double extent)
       continue;
     trusted_ = trustedRadius (center_radius_, extent);
     reach_ = trusted_ + extent;
-    nodes_.keepWithin (reach_);
     return true;
   }
   center_radius_ = 0.0;
@@ -104,18 +104,12 @@ BlockField::findReach (const Eigen::Vector3d &center, double extent)
 }
 
 void
-BlockField::findNodes (const Eigen::Vector3d &center, double reach)
-{
-  reach_ = reach;
-  nodes_.find (center, reach);
-}
-
-void
 BlockField::widen ()
 {
   trusted_ = center_radius_ + extent_;
-  findNodes (center_, trusted_ + extent_);
-  nodes_.copy ();
+  reach_ = trusted_ + extent_;
+  nodes_.lookAround (center_, reach_);
+  nodes_.copyWithin (reach_);
 }
 
 double

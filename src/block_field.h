@@ -167,9 +167,6 @@ private:
   bool
   findReach (const Eigen::Vector3d &center, double extent);
 
-  void
-  findNodes (const Eigen::Vector3d &center, double reach);
-
   /** \brief How far the support of a point goes, at most. */
   double
   reachAt (const Eigen::Vector3d &x) const;

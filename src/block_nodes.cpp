@@ -10,23 +10,13 @@ namespace erkpa
 namespace
 {
 
-/** \brief Calls take (i, place) for each place; where many follow each other, in a loop that a compiler makes vectors
- * of. */
-template <typename TakeT>
+/** \brief Arrays only grow, so that nothing is filled in where they are made longer again and again. */
+template <typename T>
 void
-visitPlaces (const std::vector<std::uint32_t> &places, std::size_t count, TakeT take)
+makeRoom (std::size_t size, std::vector<T> &array)
 {
-  constexpr std::uint32_t RUN = 8;
-  for (std::size_t i = 0; i < count; i += RUN)
-  {
-    const std::uint32_t first = places[i];
-    if (i + RUN <= count && places[i + RUN - 1] - first == RUN - 1)
-      for (std::uint32_t j = 0; j < RUN; ++j)
-        take (i + j, first + j);
-    else
-      for (std::size_t j = i; j < std::min (i + RUN, count); ++j)
-        take (j, places[j]);
-  }
+  if (array.size () < size)
+    array.resize (2 * size);
 }
 
 } // namespace
@@ -38,27 +28,30 @@ BlockNodes::BlockNodes (const ImplicitField &field, const lanes::Engine &engine,
 }
 
 void
-BlockNodes::find (const Eigen::Vector3d &center, double reach)
+BlockNodes::lookAround (const Eigen::Vector3d &center, double reach)
 {
   center_ = center;
-  const float limit = limitOf (reach);
-  const PointGrid &grid = *table_.grid;
   stretches_.clear ();
-  std::size_t most = lanes::MAX_WIDTH;
-  grid.visitNear (center, std::sqrt (static_cast<double> (limit)),
-                  [&] (std::size_t first, std::size_t last)
-                  {
-                    stretches_.push_back ({static_cast<std::uint32_t> (first), static_cast<std::uint32_t> (last)});
-                    most += last - first;
-                  });
-  if (places_.size () < most || squared_.size () < most)
-  {
-    places_.resize (2 * most);
-    squared_.resize (2 * most);
-  }
+  looked_for_ = lanes::MAX_WIDTH;
+  table_.grid->visitNear (center, std::sqrt (static_cast<double> (limitOf (reach))),
+                          [&] (std::size_t first, std::size_t last)
+                          {
+                            stretches_.push_back (
+                                {static_cast<std::uint32_t> (first), static_cast<std::uint32_t> (last)});
+                            looked_for_ += last - first;
+                          });
+  makeRoom (looked_for_, places_);
+}
+
+void
+BlockNodes::find (const Eigen::Vector3d &center, double reach)
+{
+  lookAround (center, reach);
+  makeRoom (looked_for_, squared_);
+  const PointGrid &grid = *table_.grid;
   const Eigen::Vector3f middle = center.cast<float> ();
   const lanes::Cloud cloud{grid.coordinates (0).data (), grid.coordinates (1).data (), grid.coordinates (2).data ()};
-  count_ = search_.findWithin (cloud, stretches_.data (), stretches_.size (), middle.data (), limit,
+  count_ = search_.findWithin (cloud, stretches_.data (), stretches_.size (), middle.data (), limitOf (reach),
                                {places_.data (), squared_.data ()});
 }
 
@@ -68,12 +61,6 @@ BlockNodes::limitOf (double reach) const
   constexpr double ROUNDING = 1e-5; // of a length, in float
   const double all = (reach + field_.largestOffset ()) * (1.0 + ROUNDING);
   return static_cast<float> (all * all);
-}
-
-void
-BlockNodes::keepWithin (double reach)
-{
-  count_ = search_.keepWithin ({places_.data (), squared_.data ()}, count_, limitOf (reach));
 }
 
 double
@@ -101,18 +88,44 @@ BlockNodes::boundOfKth (std::size_t k, double guess) const
 void
 BlockNodes::copy ()
 {
+  copyPositions ();
+  for (std::size_t a = 0; a < 3; ++a)
+  {
+    makeRoom (static_cast<std::size_t> (field_.valuesPerNode ()) * count_, normals_[a]);
+    for (std::size_t i = 0; i < count_; ++i)
+      normals_[a][i] = table_.normals[a][places_[i]];
+  }
+  addValues ();
+}
+
+void
+BlockNodes::copyWithin (double reach)
+{
+  const std::size_t room = static_cast<std::size_t> (field_.valuesPerNode ()) * looked_for_;
+  lanes::Table table{};
+  lanes::Copies copies{places_.data (), {}};
+  for (std::size_t a = 0; a < 3; ++a)
+  {
+    makeRoom (room, positions_[a]);
+    makeRoom (room, normals_[a]);
+    table.columns[a] = table_.grid->coordinates (static_cast<int> (a)).data ();
+    table.columns[3 + a] = table_.normals[a].data ();
+    copies.columns[a] = positions_[a].data ();
+    copies.columns[3 + a] = normals_[a].data ();
+  }
+  const Eigen::Vector3f center = center_.cast<float> ();
+  count_ = search_.copyWithin (table, stretches_.data (), stretches_.size (), center.data (), limitOf (reach),
+                               static_cast<float> (inverse_unit_), copies);
+  addValues ();
+}
+
+void
+BlockNodes::addValues ()
+{
   const auto per_node = static_cast<std::size_t> (field_.valuesPerNode ());
   value_points_ = per_node * count_;
   const bool has_values = field_.hasNodeValues () || per_node > 1;
   const bool has_confidences = !table_.confidences.empty ();
-  copyPositions ();
-  for (std::size_t a = 0; a < 3; ++a)
-  {
-    normals_[a].resize (value_points_);
-    float *const to = normals_[a].data ();
-    const float *const from = table_.normals[a].data ();
-    visitPlaces (places_, count_, [=] (std::size_t i, std::uint32_t place) { to[i] = from[place]; });
-  }
   confidences_.resize (has_confidences ? value_points_ : 0);
   for (std::size_t i = 0; i < confidences_.size (); ++i)
     confidences_[i] = table_.confidences[places_[i % count_]];
@@ -135,12 +148,11 @@ BlockNodes::copyPositions ()
   const auto scale = static_cast<float> (inverse_unit_);
   for (std::size_t a = 0; a < 3; ++a)
   {
-    positions_[a].resize (per_node * count_ + lanes::MAX_WIDTH);
-    float *const to = positions_[a].data ();
-    const float *const from = table_.grid->coordinates (static_cast<int> (a)).data ();
+    makeRoom (per_node * count_ + lanes::MAX_WIDTH, positions_[a]);
+    const std::vector<float> &from = table_.grid->coordinates (static_cast<int> (a));
     const auto center = static_cast<float> (center_[static_cast<Eigen::Index> (a)]);
-    visitPlaces (places_, count_,
-                 [=] (std::size_t i, std::uint32_t place) { to[i] = (from[place] - center) * scale; });
+    for (std::size_t i = 0; i < count_; ++i)
+      positions_[a][i] = (from[places_[i]] - center) * scale;
   }
 }
 

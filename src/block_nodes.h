@@ -26,14 +26,14 @@ public:
   /** \param[in] unit of the lanes' lengths */
   BlockNodes (const ImplicitField &field, const lanes::Engine &engine, double unit);
 
-  /** \brief Find the nodes whose value points may lie within \a reach of \a center, which becomes the origin; floats
-   * can say it. */
+  /** \brief Look where the nodes may be whose value points lie within \a reach of \a center, which becomes the origin;
+   * floats can say it. */
+  void
+  lookAround (const Eigen::Vector3d &center, double reach);
+
+  /** \brief The same, and find them, with their distances. */
   void
   find (const Eigen::Vector3d &center, double reach);
-
-  /** \brief Keep those whose value points may lie within \a reach, which is less than they were found for. */
-  void
-  keepWithin (double reach);
 
   /** \brief Take those of other nodes that a predicate of their place among them chooses. */
   template <typename ChooseT>
@@ -86,6 +86,10 @@ public:
   void
   copy ();
 
+  /** \brief The same of those whose value points may lie within \a reach, which is not more than was looked for. */
+  void
+  copyWithin (double reach);
+
   /** \brief Make those of the nodes' positions only. */
   void
   copyPositions ();
@@ -112,6 +116,10 @@ public:
   view (bool attributes) const;
 
 private:
+  /** \brief Values at the nodes, and the off-surface points. */
+  void
+  addValues ();
+
   /** \brief The square of the distance within which value points may lie within \a reach. */
   float
   limitOf (double reach) const;
@@ -131,6 +139,7 @@ private:
   Eigen::Vector3d center_ = Eigen::Vector3d::Zero ();
   std::size_t count_ = 0, value_points_ = 0;
   std::vector<lanes::Stretch> stretches_;
+  std::size_t looked_for_ = 0;        // room for the points of the stretches
   std::vector<std::uint32_t> places_; // in the table
   std::vector<float> squared_;        // distances from the center
   std::array<std::vector<float>, 3> positions_, normals_;

@@ -369,9 +369,31 @@ TEST (LaneSearch, FindsThePointsWithinADistanceWithEveryInstructionSet)
       EXPECT_EQ (std::vector<std::uint32_t> (places.begin (), places.begin () + static_cast<long> (kept)), expected)
           << engine[e]->name << " within " << limit;
       const std::size_t within = engine[e]->search->countWithin (squared.data (), kept, 0.5f * limit);
-      EXPECT_EQ (engine[e]->search->keepWithin (found, kept, 0.5f * limit), within) << engine[e]->name;
-      EXPECT_TRUE (std::all_of (squared.begin (), squared.begin () + static_cast<long> (within),
-                                [&] (float s) { return s <= 0.5f * limit; }));
+      EXPECT_EQ (std::count_if (squared.begin (), squared.begin () + static_cast<long> (kept),
+                                [&] (float s) { return s <= 0.5f * limit; }),
+                 static_cast<long> (within))
+          << engine[e]->name;
+      std::array<std::vector<float>, 6> copied;
+      std::vector<std::uint32_t> copied_places (places.size ());
+      erkpa::lanes::Table table{};
+      erkpa::lanes::Copies copies{copied_places.data (), {}};
+      for (std::size_t a = 0; a < copied.size (); ++a)
+      {
+        copied[a].resize (places.size ());
+        table.columns[a] = x[a % 3].data (); // normals: whatever
+        copies.columns[a] = copied[a].data ();
+      }
+      ASSERT_EQ (engine[e]->search->copyWithin (table, stretches.data (), stretches.size (), center.data (), limit, 2.0f,
+                                                copies),
+                 kept)
+          << engine[e]->name;
+      for (std::size_t i = 0; i < kept; ++i)
+        for (std::size_t a = 0; a < 3; ++a)
+        {
+          EXPECT_EQ (copied_places[i], places[i]);
+          EXPECT_EQ (copied[a][i], (x[a][places[i]] - center[a]) * 2.0f) << engine[e]->name;
+          EXPECT_EQ (copied[3 + a][i], x[a][places[i]]) << engine[e]->name;
+        }
     }
 }
 

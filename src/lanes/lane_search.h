@@ -118,18 +118,55 @@ findWithin (const Cloud &cloud, const Stretch *stretches, std::size_t count, con
   return kept;
 }
 
-/** \brief See Search::keepWithin. */
+#ifdef __AVX512F__
+/** \brief copyWithin () for sixteen points at once. */
 template <typename B>
 std::size_t
-keepWithin (const Found &found, std::size_t count, float limit)
+copyLanesWithin (const Table &table, const Stretch &stretch, const float *center, float limit, float scale,
+                 const Copies &copies, std::size_t kept)
 {
-  std::size_t kept = 0;
-  for (std::size_t i = 0; i < count; ++i)
+  for (std::size_t first = stretch.first; first < stretch.last; first += 16)
   {
-    found.places[kept] = found.places[i];
-    found.squared[kept] = found.squared[i];
-    kept += found.squared[i] <= limit ? 1 : 0;
+    const __mmask16 lanes = firstLanes<B> (stretch.last - first);
+    __m512 d[3];
+    for (std::size_t a = 0; a < 3; ++a)
+      d[a] = _mm512_sub_ps (_mm512_maskz_loadu_ps (lanes, table.columns[a] + first), _mm512_set1_ps (center[a]));
+    const __m512 squared = _mm512_fmadd_ps (d[2], d[2], _mm512_fmadd_ps (d[1], d[1], _mm512_mul_ps (d[0], d[0])));
+    const __mmask16 mask = _mm512_mask_cmp_ps_mask (lanes, squared, _mm512_set1_ps (limit), _CMP_LE_OQ);
+    for (std::size_t a = 0; a < 3; ++a)
+      _mm512_storeu_ps (copies.columns[a] + kept,
+                        _mm512_maskz_compress_ps (mask, _mm512_mul_ps (d[a], _mm512_set1_ps (scale))));
+    for (std::size_t a = 3; a < Table::COLUMNS; ++a)
+      _mm512_storeu_ps (copies.columns[a] + kept,
+                        _mm512_maskz_compress_ps (mask, _mm512_maskz_loadu_ps (lanes, table.columns[a] + first)));
+    kept += appendLanes<B> (mask, first, copies.places + kept);
   }
+  return kept;
+}
+#endif
+
+/** \brief See Search::copyWithin. */
+template <typename B>
+std::size_t
+copyWithin (const Table &table, const Stretch *stretches, std::size_t count, const float *center, float limit,
+            float scale, const Copies &copies)
+{
+#ifdef __AVX512F__
+  if constexpr (IS_WIDEST<B>)
+  {
+    std::size_t kept = 0;
+    for (const Stretch *stretch = stretches; stretch != stretches + count; ++stretch)
+      kept = copyLanesWithin<B> (table, *stretch, center, limit, scale, copies, kept);
+    return kept;
+  }
+#endif
+  const std::size_t kept = findWithin<B> ({table.columns[0], table.columns[1], table.columns[2]}, stretches, count,
+                                          center, limit, {copies.places, copies.columns[0]});
+  for (std::size_t a = 0; a < Table::COLUMNS; ++a)
+    pick<B> (table.columns[a], copies.places, kept, copies.columns[a]);
+  for (std::size_t a = 0; a < 3; ++a)
+    for (std::size_t i = 0; i < kept; ++i)
+      copies.columns[a][i] = (copies.columns[a][i] - center[a]) * scale;
   return kept;
 }
 
@@ -150,7 +187,7 @@ constexpr Search
 makeSearch ()
 {
   using B = xsimd::batch<float, ArchT>;
-  return {findWithin<B>, keepWithin<B>, countWithin<B>};
+  return {findWithin<B>, copyWithin<B>, countWithin<B>};
 }
 
 } // namespace erkpa::lanes

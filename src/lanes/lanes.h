@@ -168,6 +168,21 @@ struct Found
   float *squared;
 };
 
+/** \brief Positions and normals of points, as arrays. */
+struct Table
+{
+  static constexpr std::size_t COLUMNS = 6;
+
+  const float *columns[COLUMNS];
+};
+
+/** \brief The same of some of them, and their places. */
+struct Copies
+{
+  std::uint32_t *places;
+  float *columns[Table::COLUMNS];
+};
+
 /** \brief A search, for the neighbourhood that evaluation points share. */
 struct Search
 {
@@ -178,8 +193,11 @@ struct Search
   std::size_t (*findWithin) (const Cloud &cloud, const Stretch *stretches, std::size_t count, const float *center,
                              float limit, const Found &found);
 
-  /** \brief Drops those beyond a lower limit; returns how many are left. */
-  std::size_t (*keepWithin) (const Found &found, std::size_t count, float limit);
+  /** \brief Copies them: positions about the center, times a scale.
+   * \param[out] copies have as much room
+   */
+  std::size_t (*copyWithin) (const Table &table, const Stretch *stretches, std::size_t count, const float *center,
+                             float limit, float scale, const Copies &copies);
 
   /** \brief How many are within a limit. */
   std::size_t (*countWithin) (const float *squared, std::size_t count, float limit);
