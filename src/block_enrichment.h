@@ -32,6 +32,13 @@ public:
   void
   gather (const Eigen::Vector3d &center, double reach);
 
+  /** \brief Whether no sharp surface is near the ball. */
+  bool
+  isEmpty () const
+  {
+    return near_.empty ();
+  }
+
   /** \brief Whether none of them passes within \a reach of \a x (local frame): all nodes of its support lie on one side
    * of each. */
   bool

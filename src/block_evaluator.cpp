@@ -87,9 +87,7 @@ BlockEvaluator::evaluateForeseen (GridField &worker, const int *first_block, con
                                   const Eigen::Vector3d &center) const
 {
   BlockField &field = worker.block;
-  const bool has_center = field.canEvaluateAt (center);
-  if (has_center)
-    field.addPoint (center);
+  const bool has_center = field.addSketchPoint (center);
   evaluateTogether (worker);
   FieldSketch sketch;
   if (!has_center || !field.sketch (0, sketch))
@@ -146,11 +144,8 @@ BlockEvaluator::evaluateTogether (GridField &worker) const
   for (const WantedNode node : wanted)
   {
     const Eigen::Vector3d position = positionOf (node);
-    if (field.canEvaluateAt (position))
-    {
+    if (field.addPoint (position))
       wanted[taken++] = node;
-      field.addPoint (position);
-    }
     else
       worker.left.push_back (node);
   }

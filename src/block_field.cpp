@@ -120,17 +120,6 @@ BlockField::reachAt (const Eigen::Vector3d &x) const
   return (radius + field_.largestOffset ()) * (1.0 + ROUNDING);
 }
 
-bool
-BlockField::canEvaluateAt (const Eigen::Vector3d &x) const
-{
-  const bool is_at_faces = has_separations_ && faces_.hasSeparationAt (x);
-  if (is_at_faces && !BlockFaces::canEvaluate (field_))
-    return false;
-  const double reach = reachAt (x);
-  const bool by_nearest = field_.supportSize ().kind () == SupportSize::Kind::NEAREST;
-  return enrichment_.isAbsentAt (x, reach) || (!is_at_faces && by_nearest && enrichment_.canEvaluateAt (x, reach));
-}
-
 void
 BlockField::clearPoints ()
 {
@@ -139,25 +128,34 @@ BlockField::clearPoints ()
   at_faces_.clear ();
   enriched_.clear ();
   enriched_at_.clear ();
+  enriched_reach_ = 0.0;
 }
 
-void
+bool
 BlockField::addPoint (const Eigen::Vector3d &x)
 {
+  const bool is_at_faces = has_separations_ && faces_.hasSeparationAt (x);
+  if (is_at_faces && !BlockFaces::canEvaluate (field_))
+    return false;
   const Eigen::Vector3f scaled = ((x - center_) * inverse_unit_).cast<float> ();
-  if (!enrichment_.isAbsentAt (x, reachAt (x)))
+  const double reach = enrichment_.isEmpty () ? 0.0 : reachAt (x);
+  if (!enrichment_.isAbsentAt (x, reach))
   {
+    const bool by_nearest = field_.supportSize ().kind () == SupportSize::Kind::NEAREST;
+    if (is_at_faces || !by_nearest || !enrichment_.canEvaluateAt (x, reach))
+      return false;
     places_.push_back ({true, static_cast<std::uint32_t> (enriched_.size ()), -1});
     enriched_.add (scaled);
     enriched_at_.push_back (x);
-    return;
+    enriched_reach_ = std::max (enriched_reach_, reach);
+    return true;
   }
-  const bool is_at_faces = has_separations_ && faces_.hasSeparationAt (x);
   const auto index = static_cast<std::uint32_t> (plain_.size ());
   places_.push_back ({false, index, is_at_faces ? static_cast<int> (at_faces_.size ()) : -1});
   if (is_at_faces)
     at_faces_.push_back (index);
   plain_.add (scaled);
+  return true;
 }
 
 /** \brief What is known of ε at the points. */
@@ -212,10 +210,7 @@ BlockField::run ()
   if (enriched_.size () > 0)
   {
     setRadii (enriched_);
-    double reach = 0.0;
-    for (const Eigen::Vector3d &x : enriched_at_)
-      reach = std::max (reach, reachAt (x));
-    enrichment_.run (engine_, settings_, nodes_, enriched_at_, reach, enriched_);
+    enrichment_.run (engine_, settings_, nodes_, enriched_at_, enriched_reach_, enriched_);
   }
 }
 
@@ -264,11 +259,20 @@ BlockField::face (std::size_t point) const
 }
 
 bool
+BlockField::addSketchPoint (const Eigen::Vector3d &x)
+{
+  if (settings_.constraint == lanes::Constraint::FUNCTIONAL || settings_.basis == lanes::Basis::CONSTANT)
+    return false;
+  places_.push_back ({false, static_cast<std::uint32_t> (plain_.size ()), -1});
+  plain_.add (((x - center_) * inverse_unit_).cast<float> ());
+  return true;
+}
+
+bool
 BlockField::sketch (std::size_t point, FieldSketch &sketch) const
 {
   const std::size_t i = placeOf (point);
-  if (places_[point].is_enriched || settings_.constraint == lanes::Constraint::FUNCTIONAL ||
-      settings_.basis == lanes::Basis::CONSTANT || plain_.states[i] != lanes::State::DEFINED)
+  if (plain_.states[i] != lanes::State::DEFINED)
     return false;
   const auto coefficient = [&] (std::size_t j) { return unit_ * static_cast<double> (plain_.coefficient (i, j)); };
   const double radius = unit_ * static_cast<double> (plain_.radii[i]);

@@ -48,16 +48,14 @@ public:
   bool
   gather (const Eigen::Vector3d &center, double extent);
 
-  /** \brief Whether a point of the ball that was gathered for can be evaluated here: the sharp surfaces in its reach
-   * decide. */
-  bool
-  canEvaluateAt (const Eigen::Vector3d &x) const;
-
   /** \brief Forget the points, then take up others. */
   void
   clearPoints ();
 
-  void
+  /** \brief Take up a point of the ball that was gathered for.
+   * \return false, and it is not taken up, where it cannot be evaluated here: the sharp surfaces in its reach decide
+   */
+  bool
   addPoint (const Eigen::Vector3d &x);
 
   std::size_t
@@ -128,10 +126,13 @@ public:
   int
   face (std::size_t point) const;
 
-  /** \brief f around a point that no sharp surface is near; false where there is none.
-   *
-   * Not for eq. (2) either: what the nodes ask for depends on the point, and their fit says nothing of other ones.
+  /** \brief Take up a point for sketch (), as if no sharp surface and no other face were near.
+   * \return false with eq. (2): what the nodes ask for depends on the point, and their fit says nothing of other ones
    */
+  bool
+  addSketchPoint (const Eigen::Vector3d &x);
+
+  /** \brief About how f goes on from such a point; false where it is undefined. */
   bool
   sketch (std::size_t point, FieldSketch &sketch) const;
 
@@ -215,6 +216,7 @@ private:
   bool has_separations_ = false;
   std::vector<std::uint32_t> at_faces_;      // of plain_
   std::vector<Eigen::Vector3d> enriched_at_; // local frame
+  double enriched_reach_ = 0.0;              // the largest of them
   Eigen::Vector3d center_ = Eigen::Vector3d::Zero ();
   double extent_ = 0.0;        // of the ball
   double center_radius_ = 0.0; // ε in its middle, at most

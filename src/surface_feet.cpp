@@ -63,11 +63,8 @@ private:
     std::vector<std::size_t> together;
     if (block.gather (group.center, group.extent))
       for (std::size_t w = group.first; w < group.last; ++w)
-        if (const std::size_t i = waiting_[w]; block.canEvaluateAt (points_[i]))
-        {
-          block.addPoint (points_[i]);
+        if (const std::size_t i = waiting_[w]; block.addPoint (points_[i]))
           together.push_back (i);
-        }
     block.evaluate (true);
     std::size_t taken = 0;
     for (std::size_t w = group.first; w < group.last; ++w)

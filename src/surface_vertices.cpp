@@ -174,13 +174,12 @@ private:
       for (const EdgeRoot root : roots)
       {
         const Eigen::Vector3d position = positionOf (root);
-        if (!field.canEvaluateAt (position))
+        if (!field.addPoint (position))
         {
           alone.push_back (root);
           continue;
         }
         roots[taken++] = root;
-        field.addPoint (position);
       }
       field.evaluate (true);
       std::size_t left = 0;

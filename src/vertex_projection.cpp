@@ -78,11 +78,8 @@ private:
     block.clearPoints ();
     std::size_t taken = 0;
     for (const Way &way : ways)
-      if (block.canEvaluateAt (way.position))
-      {
-        block.addPoint (way.position);
+      if (block.addPoint (way.position))
         ways[taken++] = way;
-      }
       else
         worker.alone.push_back (way);
     block.evaluate (true);

@@ -83,8 +83,7 @@ protected:
     for (int i = 0; i < 21; ++i)
     {
       points.push_back (middle + extent * randomPoint (0.57));
-      EXPECT_TRUE (block.canEvaluateAt (points.back ()));
-      block.addPoint (points.back ());
+      EXPECT_TRUE (block.addPoint (points.back ()));
     }
     block.evaluate (true);
     return points;

@@ -89,8 +89,8 @@ public:
     solve (a_);
     Change all, below[KinksT::MAX_COUNT], above[KinksT::MAX_COUNT];
     B by_u[3] = {B (0.0f), B (0.0f), B (0.0f)}, by_radius (0.0f);
-    for (std::size_t i = 0; i < support_.size (); ++i)
-      addResidual (i, by_u, by_radius, all, below, above);
+    weights_.visitNodes ([&] (std::size_t i, B, B t, const B *u)
+                         { addResidual (i, t, u, by_u, by_radius, all, below, above); });
     for (int a = 0; a < 3; ++a)
     {
       gradient[a] = xsimd::fma (growth_[a], by_radius, c_[1 + a] - by_u[a]);
@@ -181,17 +181,14 @@ private:
       for (int i = 0; i <= j; ++i)
         M_[at (j, i)] = B (0.0f);
     }
-    for (std::size_t i = 0; i < support_.size (); ++i)
-    {
-      const std::size_t node = support_.node (i);
-      B d[3], squared, t;
-      const B weight = weights_.weight (i, d, squared, t);
-      reach_.count (squared);
-      kinks_.weigh (node, weight);
-      for (int a = 0; a < 3; ++a)
-        d[a] *= scale_;
-      addNode (i, weight, d);
-    }
+    weights_.visitNodes (
+        [this] (std::size_t i, B squared, B t, const B *u)
+        {
+          const B weight = weights_.weightAt (i, t);
+          reach_.count (squared);
+          kinks_.weigh (support_.node (i), weight);
+          addNode (i, weight, u);
+        });
     reach_.endOnSurface ();
   }
 
@@ -203,17 +200,21 @@ private:
     weights_.normal (i, n);
     TermsT::evaluate (u, dot (u, u), R);
     TermsT::addNormal (weight, u, n, b_);
-    kinks_.evaluate (node, R + SIZE, G);
+    const unsigned there = kinks_.evaluate (node, R + SIZE, G);
+    const bool has_height = weights_.hasLambda ();
     const B height = weights_.lambda (i) * scale_;
     for (int j = 0; j < size (); ++j)
     {
+      if (j >= SIZE && (there >> (j - SIZE) & 1u) == 0)
+        continue;
       const B wr = weight * R[j];
-      for (int i = 0; i <= j; ++i)
-        M_[at (j, i)] = xsimd::fma (wr, R[i], M_[at (j, i)]);
-      b_[j] = xsimd::fma (wr, height, b_[j]);
+      for (int k = 0; k <= j; ++k)
+        M_[at (j, k)] = xsimd::fma (wr, R[k], M_[at (j, k)]);
+      if (has_height)
+        b_[j] = xsimd::fma (wr, height, b_[j]);
+      if (j >= SIZE)
+        addSlopesOf (j - SIZE, weight, u, n, G);
     }
-    for (int e = 0; e < size () - SIZE; ++e)
-      addSlopesOf (e, weight, u, n, G);
   }
 
   /** \brief The products of the gradients of kink term e with those of the terms before it; polynomials' own follow
@@ -298,17 +299,15 @@ private:
 
   /** \brief The residual of the fit at a node, by which the change of its weight moves f; and that change by itself. */
   void
-  addResidual (std::size_t place, B *by_u, B &by_radius, Change &all, Change *below, Change *above) const
+  addResidual (std::size_t i, B t, const B *u, B *by_u, B &by_radius, Change &all, Change *below, Change *above) const
   {
-    const std::size_t node = support_.node (place);
-    B u[3], squared, t, n[3], R[MAX_SIZE], G[KinksT::MAX_TERMS][3];
-    const B weight = weights_.weight (place, u, squared, t);
-    weights_.normal (place, n);
-    for (int a = 0; a < 3; ++a)
-      u[a] *= scale_;
+    const std::size_t node = support_.node (i);
+    B n[3], R[MAX_SIZE], G[KinksT::MAX_TERMS][3];
+    const B weight = weights_.weightAt (i, t);
+    weights_.normal (i, n);
     TermsT::evaluate (u, t * t, R);
     kinks_.evaluate (node, R + SIZE, G);
-    B share (0.0f), residual = weights_.lambda (place) * scale_;
+    B share (0.0f), residual = weights_.lambda (i) * scale_;
     for (int j = 0; j < size (); ++j)
     {
       share = xsimd::fma (a_[j], R[j], share);
@@ -329,7 +328,7 @@ private:
     const B of_gradients = dot (of_shape, n);
     residual = xsimd::fma (share, residual, of_gradients);
     by_radius = xsimd::fma (weight, of_gradients, by_radius);
-    const B slope = weights_.slope (place, t), force = slope * residual;
+    const B slope = weights_.slope (i, t), force = slope * residual;
     by_radius = fnma (B (0.5f) * t * t, force, by_radius);
     for (int a = 0; a < 3; ++a)
       by_u[a] = xsimd::fma (force, u[a], by_u[a]);

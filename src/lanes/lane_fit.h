@@ -89,7 +89,7 @@ public:
     B by_u[3] = {B (0.0f), B (0.0f), B (0.0f)}, by_radius (0.0f), direct[3] = {by_radius, by_radius, by_radius};
     if constexpr (SIZE == 1)
       centroid_[0] = centroid_[1] = centroid_[2] = B (0.0f);
-    visitNodes ([&] (std::size_t i, B t, const B *u) { addResidual (i, t, u, by_u, by_radius, direct); });
+    weights_.visitNodes ([&] (std::size_t i, B, B t, const B *u) { addResidual (i, t, u, by_u, by_radius, direct); });
     for (int a = 0; a < 3; ++a)
     {
       gradient[a] = xsimd::fma (growth[a], by_radius, direct[a] - by_u[a]);
@@ -145,39 +145,6 @@ private:
         system_.b[i] *= TermsT::degree (i) == 0 ? support_.radius () : power[TermsT::degree (i) - 1];
       else
         system_.b[i] *= power[TermsT::degree (i) + 1];
-    }
-  }
-
-  /** \brief Calls visit (i, t, u) for each node to visit; t is 1 beyond the support.
-   *
-   * Distances are made for some nodes ahead: what follows from them would wait for them one by one.
-   */
-  template <typename VisitT>
-  void
-  visitNodes (VisitT visit) const
-  {
-    constexpr std::size_t AHEAD = B::size == 16 ? 8 : 4;
-    std::size_t i = 0;
-    for (; i + AHEAD <= support_.size (); i += AHEAD)
-      visitSome<AHEAD> (i, visit);
-    for (; i < support_.size (); ++i)
-      visitSome<1> (i, visit);
-  }
-
-  template <std::size_t N, typename VisitT>
-  [[gnu::always_inline]] void
-  visitSome (std::size_t i, VisitT &visit) const
-  {
-    B squared[N], t[N];
-    support_.template distances<N> (i, squared);
-    weights_.template shares<N> (squared, t);
-    for (std::size_t n = 0; n < N; ++n)
-    {
-      B u[3];
-      support_.offset (i + n, u);
-      for (int a = 0; a < 3; ++a)
-        u[a] *= scale_;
-      visit (i + n, t[n], u);
     }
   }
 
@@ -262,7 +229,7 @@ private:
     B by_pivot[3], by_spread[3];
     for (int a = 0; a < 3; ++a)
       by_pivot[a] = by_spread[a] = B (0.0f);
-    const auto add = [&] (std::size_t i, B t, const B *d)
+    const auto add = [&] (std::size_t i, B, B t, const B *d)
     {
       B R[SIZE], away (0.0f);
       const B slope = weights_.slope (i, t), squared = t * t;
@@ -280,7 +247,7 @@ private:
         by_spread[a] = fnma (change, away, by_spread[a]);
       }
     };
-    visitNodes (add);
+    weights_.visitNodes (add);
     for (int a = 0; a < 3; ++a)
     {
       of_pivot[a] = by_pivot[a];

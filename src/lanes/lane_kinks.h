@@ -66,14 +66,18 @@ public:
     return surfaces () + corners () + surface;
   }
 
-  /** \brief Values and slopes of the terms at a node. */
-  void
+  /** \brief Values and slopes of the terms at a node.
+   * \return a bit for each term that is not zero in all lanes
+   */
+  unsigned
   evaluate (std::size_t node, B *R, B (*G)[3]) const
   {
+    unsigned there = ~0u;
     for (int s = 0; s < surfaces (); ++s)
     {
       const Surface &surface = *near_.surfaces[s];
       const B theta = B (surface.theta[node]) * scale_, height = sign_[s] * theta, on = isOn (height, s);
+      there &= xsimd::any (on > B (0.5f)) ? ~0u : ~(1u << s);
       R[s] = on * height;
       R[squareOf (s)] = theta * theta;
       for (int a = 0; a < 3; ++a)
@@ -85,6 +89,7 @@ public:
     }
     for (int k = 0; k < corners (); ++k)
       evaluateCorner (node, k, R[surfaces () + k], G[surfaces () + k]);
+    return there;
   }
 
   /** \brief Calls visit (surface, whether it is below) for the surfaces that a node is not on. */

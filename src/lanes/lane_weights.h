@@ -20,28 +20,23 @@ public:
   {
   }
 
-  /** \brief Zero beyond the support.
-   * \param[out] d x_i - x
-   * \param[out] t |x_i - x| / ε, at most 1
+  /** \brief Calls visit (i, |x_i - x|², t, u) for each node to visit, u = (x_i - x) / ε; t is 1 beyond the support.
+   *
+   * Distances are made for some nodes ahead: what follows from them would wait for them one by one.
    */
-  B
-  weight (std::size_t i, B *d, B &squared, B &t) const
+  template <typename VisitT>
+  void
+  visitNodes (VisitT visit) const
   {
-    squared = support_.offset (i, d);
-    t = share (squared);
-    return weightAt (i, t);
+    constexpr std::size_t AHEAD = B::size == 16 ? 8 : 4;
+    std::size_t i = 0;
+    for (; i + AHEAD <= support_.size (); i += AHEAD)
+      visitSome<AHEAD> (i, visit);
+    for (; i < support_.size (); ++i)
+      visitSome<1> (i, visit);
   }
 
-  /** \brief t, from |x_i - x|². */
-  B
-  share (B squared) const
-  {
-    B t;
-    shares<1> (&squared, &t);
-    return t;
-  }
-
-  /** \brief The same for N nodes at once.
+  /** \brief t of N nodes, from |x_i - x|².
    *
    * To the last digit or so: a Newton step, t = q r (3 - q r²) with q = t²/4, from the processor's estimate r of 1/√q
    * takes a third of the time that its root takes. Operations for different nodes stand side by side, so that few of
@@ -97,7 +92,13 @@ public:
     n[2] = B (support_.near (LaneSupport<B>::NORMAL + 2)[i]);
   }
 
-  /** \brief λ_i, a length. */
+  bool
+  hasLambda () const
+  {
+    return lambda_ != nullptr;
+  }
+
+  /** \brief λ_i, a length; zero where there is none. */
   B
   lambda (std::size_t i) const
   {
@@ -109,15 +110,30 @@ public:
   sum (const float *attribute) const
   {
     B sum (0.0f);
-    for (std::size_t i = 0; i < support_.size (); ++i)
-    {
-      B d[3], squared, t;
-      sum = xsimd::fma (weight (i, d, squared, t), B (attribute[support_.node (i)]), sum);
-    }
+    visitNodes ([&] (std::size_t i, B, B t, const B *)
+                { sum = xsimd::fma (weightAt (i, t), B (attribute[support_.node (i)]), sum); });
     return sum;
   }
 
 private:
+  template <std::size_t N, typename VisitT>
+  [[gnu::always_inline]] void
+  visitSome (std::size_t i, VisitT &visit) const
+  {
+    B squared[N], t[N];
+    support_.template distances<N> (i, squared);
+    shares<N> (squared, t);
+    const B scale = support_.inverse ();
+    for (std::size_t n = 0; n < N; ++n)
+    {
+      B u[3];
+      support_.offset (i + n, u);
+      for (int a = 0; a < 3; ++a)
+        u[a] *= scale;
+      visit (i + n, squared[n], t[n], u);
+    }
+  }
+
   B
   confident (std::size_t i, B weight) const
   {

@@ -92,8 +92,7 @@ FieldProblem::evaluateTogether (const Eigen::Vector3d &center)
   if (!block.gather (center, extent_))
     return;
   for (const Eigen::Vector3d &offset : offsets_)
-    if (block.canEvaluateAt (center + offset))
-      block.addPoint (center + offset);
+    block.addPoint (center + offset);
   block.evaluate (what_.gradients);
   for (std::size_t i = 0; i < block.size (); ++i)
     sum_ += block.value (i);
