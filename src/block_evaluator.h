@@ -45,9 +45,11 @@ isInReach (const LocalField &local, const PolygonizerOptions &options, double vo
 class BlockEvaluator
 {
 public:
-  /** \param[in] foresees whether nodes that were not asked for yet are evaluated, too, where it looks as if they will */
+  /** \param[in] foresees whether nodes that were not asked for yet are evaluated, too, where it looks as if they will
+   */
   BlockEvaluator (const ImplicitField &field, const PolygonizerOptions &options, SparseGrid &grid, bool foresees)
-      : options_ (options), grid_ (grid), foresees_ (foresees), parts_ (partsOfBlock (field.typicalRadius () / grid.voxelSize ()))
+      : options_ (options), grid_ (grid), foresees_ (foresees),
+        parts_ (partsOfBlock (field.typicalRadius () / grid.voxelSize ()))
   {
   }
 

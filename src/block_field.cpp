@@ -39,7 +39,8 @@ BlockField::BlockField (const ImplicitField &field, const lanes::Engine &engine)
     : field_ (field), can_evaluate_ (canEvaluate (field)), engine_ (engine), unit_ (field.supportSize ().typical ()),
       inverse_unit_ (1.0 / unit_), settings_ (laneSettingsOf (field)), nodes_ (field, engine, unit_),
       faces_ (field, engine, settings_, unit_), enrichment_ (field, unit_),
-      plain_ (static_cast<std::size_t> (field.points ().channels), termsOf (settings_.basis), field.faces () != nullptr),
+      plain_ (static_cast<std::size_t> (field.points ().channels), termsOf (settings_.basis),
+              field.faces () != nullptr),
       enriched_ (static_cast<std::size_t> (field.points ().channels), 0, field.faces () != nullptr)
 {
   setReach (1.0, 0.0, 0.0);

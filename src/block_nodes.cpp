@@ -33,13 +33,13 @@ BlockNodes::lookAround (const Eigen::Vector3d &center, double reach)
   center_ = center;
   stretches_.clear ();
   looked_for_ = lanes::MAX_WIDTH;
-  table_.grid->visitNear (center, std::sqrt (static_cast<double> (limitOf (reach))),
-                          [&] (std::size_t first, std::size_t last)
-                          {
-                            stretches_.push_back (
-                                {static_cast<std::uint32_t> (first), static_cast<std::uint32_t> (last)});
-                            looked_for_ += last - first;
-                          });
+  table_.grid->visitNear (
+      center, std::sqrt (static_cast<double> (limitOf (reach))),
+      [&] (std::size_t first, std::size_t last)
+      {
+        stretches_.push_back ({static_cast<std::uint32_t> (first), static_cast<std::uint32_t> (last)});
+        looked_for_ += last - first;
+      });
   makeRoom (looked_for_, places_);
 }
 

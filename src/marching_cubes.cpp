@@ -14,8 +14,8 @@
 #include "surface_pieces.h"
 #include "surface_tracking.h"
 #include "surface_vertices.h"
-#include "vertex_projection.h"
 #include "text.h"
+#include "vertex_projection.h"
 
 #include <Eigen/Geometry>
 

@@ -106,7 +106,7 @@ private:
   std::vector<GridPoint> active_;
   std::size_t active_count_ = 0;
   std::vector<int> requested_blocks_;
-  bool foresees_ = false; // see BlockEvaluator
+  bool foresees_ = false;                               // see BlockEvaluator
   std::size_t evaluated_blocks_ = 0;                    // a block counts once per front that asks for nodes of it
   std::vector<std::pair<std::size_t, GridPoint>> feet_; // of nodes that lie in no active cell: their cells; sorted
 };

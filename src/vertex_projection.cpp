@@ -58,8 +58,7 @@ public:
     worker.together.clear ();
     worker.alone.clear ();
     for (std::size_t i = group.first; i < group.last; ++i)
-      worker.together.push_back (
-          {first + i, vertices_.positions[first + i], vertices_.positions[first + i]});
+      worker.together.push_back ({first + i, vertices_.positions[first + i], vertices_.positions[first + i]});
     if (worker.block.gather (group.center, group.extent + limit_))
       for (int step = 0; step <= STEPS && !worker.together.empty (); ++step)
         stepTogether (worker, step == STEPS);
@@ -128,7 +127,10 @@ projectVertices (const ImplicitField &field, const PolygonizerOptions &options, 
   const VertexProjector projector (options, limit, vertices);
   using Worker = VertexProjector::Worker;
   parallelFor (
-      groups.size (), options.threads, [&] { return Worker{LocalField (field), BlockField (field), {}, {}}; },
+      groups.size (), options.threads,
+      [&] {
+        return Worker{LocalField (field), BlockField (field), {}, {}};
+      },
       [&] (Worker &worker, std::size_t g) { projector.project (worker, first, groups[g]); },
       [&report] (const Worker &worker)
       {

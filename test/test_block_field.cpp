@@ -179,6 +179,41 @@ TEST_F (BlockFieldTest, AgreesWithTheDefinitionFarFromTheNodes)
   }
 }
 
+/** \brief Sums are taken about the middle of the ball, which is many supports away from most points here. */
+TEST_F (BlockFieldTest, AgreesWithTheDefinitionInABallOfManySupports)
+{
+  for (const Order order : {Order::LINEAR, Order::SPHERICAL, Order::QUADRATIC})
+    for (const bool is_fixed : {false, true})
+    {
+      FieldOptions options = optionsOf (order, is_fixed ? 0 : 20);
+      options.radius = is_fixed ? 0.1 : 0.0;
+      const auto field = shapes::field (wavySheet (), options);
+      const double radius = field->typicalRadius (), extent = 9.0 * radius;
+      std::size_t engines = 0;
+      const erkpa::lanes::Engine *const *engine = erkpa::lanes::engines (engines);
+      for (std::size_t e = 0; e < engines; ++e)
+      {
+        BlockField block (*field, *engine[e]);
+        LocalField local (*field);
+        ASSERT_TRUE (block.gather (Vector3d::Zero (), extent));
+        std::vector<Vector3d> points;
+        for (const Eigen::Vector3f &position : field->points ().positions)
+          if (const Vector3d node = position.cast<double> (); node.norm () < extent - radius && points.size () < 300)
+            points.push_back (node + 0.3 * radius * randomPoint (0.57));
+        ASSERT_GT (points.size (), 100u);
+        for (const Vector3d &x : points)
+          ASSERT_TRUE (block.addPoint (x));
+        block.evaluate (false);
+        for (std::size_t i = 0; i < points.size (); ++i)
+        {
+          local.gather (points[i], 0.0);
+          EXPECT_NEAR (block.value (i), local.value (points[i]), 2e-4 * radius)
+              << engine[e]->name << (is_fixed ? ", fixed radius, " : ", nearest, ") << static_cast<int> (order);
+        }
+      }
+    }
+}
+
 /** \brief A box with the faces that are found on it, and the smoother field without. */
 std::shared_ptr<erkpa::ImplicitField>
 boxWithFaces (Order order)
@@ -382,8 +417,8 @@ TEST (LaneSearch, FindsThePointsWithinADistanceWithEveryInstructionSet)
         table.columns[a] = x[a % 3].data (); // normals: whatever
         copies.columns[a] = copied[a].data ();
       }
-      ASSERT_EQ (engine[e]->search->copyWithin (table, stretches.data (), stretches.size (), center.data (), limit, 2.0f,
-                                                copies),
+      ASSERT_EQ (engine[e]->search->copyWithin (table, stretches.data (), stretches.size (), center.data (), limit,
+                                                2.0f, copies),
                  kept)
           << engine[e]->name;
       for (std::size_t i = 0; i < kept; ++i)

@@ -192,8 +192,7 @@ evaluateEnriched (const Settings &settings, const Nodes &nodes, const Points &po
         else if (near.count == 1)
           take_with (LaneEnrichedFit<B, BASIS, KernelT, 1> (settings, near, first, support), support, first);
         else
-          take_with (LaneEnrichedFit<B, BASIS, KernelT, ANY_COUNT> (settings, near, first, support), support,
-                     first);
+          take_with (LaneEnrichedFit<B, BASIS, KernelT, ANY_COUNT> (settings, near, first, support), support, first);
       });
 }
 

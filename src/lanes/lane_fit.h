@@ -23,8 +23,7 @@ public:
   /** \param[in,out] sums M and b as LaneMoments says them; the decomposition of M when the fit is made */
   LaneFit (const Settings &settings, const LaneSupport<B> &support, const LaneReach<B> &reach,
            LaneSystem<Terms<B, BASIS>, B> &sums)
-      : support_ (support), weights_ (settings, support), scale_ (support.inverse ()), reach_ (reach),
-        system_ (sums)
+      : support_ (support), weights_ (settings, support), scale_ (support.inverse ()), reach_ (reach), system_ (sums)
   {
     scaleMoments ();
     for (int a = 0; a < (SIZE > 1 ? 3 : 0); ++a)

@@ -111,7 +111,8 @@ private:
   static constexpr int SLOPES = CONSTRAINT == Constraint::HERMITE ? SIZE - 1 : 0;
   static constexpr int COLUMNS = PRODUCTS.count + SLOPES;
   static constexpr std::size_t WIDTH = B::size, CHUNK = 64;
-  static constexpr std::size_t TOGETHER = B::size == 16 ? 8 : 4; // nodes, for each of which operations wait for one another
+  static constexpr std::size_t TOGETHER =
+      B::size == 16 ? 8 : 4; // nodes, for each of which operations wait for one another
 
   /** \brief What is summed up for a vector of points. */
   struct Sums
@@ -344,8 +345,7 @@ private:
       TermsT::shift (sums.shift, slopes);
     TermsT::shift (sums.shift, heights);
     // The others are the products of gradients, a degree of two lower.
-    const B of_heights =
-        CONSTRAINT == Constraint::HERMITE ? support.inverse () * support.inverse () : B (1.0f);
+    const B of_heights = CONSTRAINT == Constraint::HERMITE ? support.inverse () * support.inverse () : B (1.0f);
     for (int j = 0; j < SIZE; ++j)
       system.b[j] = xsimd::fma (of_heights, heights[j], slopes[j]);
   }

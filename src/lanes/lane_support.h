@@ -13,7 +13,7 @@ class LaneSupport
 public:
   static constexpr std::size_t WIDTH = B::size;
   static constexpr std::size_t NORMAL = 3, LAMBDA = 6, CONFIDENCE = 7; // columns
-  static constexpr std::size_t LARGEST = 3; // see largestWithin ()
+  static constexpr std::size_t LARGEST = 3;                            // see largestWithin ()
 
   /** \brief Take up the points of some lanes.
    * \param[in] first place of the evaluation point in the first lane
@@ -369,8 +369,8 @@ private:
   bool is_limited_;
   B x_[3];
   B radius_, inverse_, kth_;
-  B at_limit_;  // 1 where ε is Points::radius
-  B short_;     // 1 where it is beyond
+  B at_limit_; // 1 where ε is Points::radius
+  B short_;    // 1 where it is beyond
 };
 
 } // namespace erkpa::lanes

@@ -8,7 +8,8 @@
 namespace erkpa::lanes
 {
 
-/** \brief What a node, the i-th to visit, brings into the sums at the evaluation points: its weight w(t) Δx_i, and what it asks for. */
+/** \brief What a node, the i-th to visit, brings into the sums at the evaluation points: its weight w(t) Δx_i, and what
+ * it asks for. */
 template <typename B, template <typename> class KernelT>
 class LaneWeights
 {

@@ -59,7 +59,7 @@ measureLanes (benchmark::State &state, const Engine &engine, const LaneCase &wha
   const double seconds = bench::threadSeconds () - start, iterations = static_cast<double> (state.iterations ());
   count (state, iterations * static_cast<double> (problem.pairs ()),
          iterations * static_cast<double> (problem.points ()), seconds,
-         bench::flopsPerPair (what.basis, what.gradients), &engine);
+         bench::flopsPerPair (what.basis, what.constraint, what.gradients), &engine);
   if (!problem.isDefined ())
     state.SkipWithError ("the field is undefined at a point");
   else if (what.k == 0 && problem.pairs () != what.nodes * problem.points ())
@@ -86,7 +86,8 @@ measureField (benchmark::State &state, const bench::FieldCase &what)
     problem.evaluate (ball++);
   const double seconds = bench::threadSeconds () - start;
   // The flops of the lanes' float sums say nothing about the scalar field's.
-  const double flops = what.engine != nullptr ? bench::flopsPerPair (Basis::SPHERICAL, what.gradients) : 0.0;
+  const double flops =
+      what.engine != nullptr ? bench::flopsPerPair (Basis::SPHERICAL, Constraint::HERMITE, what.gradients) : 0.0;
   count (state, static_cast<double> (problem.pairs ()), static_cast<double> (problem.evaluations ()), seconds, flops,
          what.engine);
   if (problem.evaluations () == 0)

@@ -55,13 +55,13 @@ height (double x, double y)
 } // namespace
 
 double
-flopsPerPair (Basis basis, bool gradients)
+flopsPerPair (Basis basis, erkpa::lanes::Constraint constraint, bool gradients)
 {
-  const double n = sizeOf (basis), products = pick (basis, 0.0, 0.0, 0.0, 6.0);
-  const double right = pick (basis, 8.0, 6.0, 14.0, 36.0);
-  const double value = 18.0 + products + (n - 1.0) + n + n * (n - 1.0) + right;
-  const double slopes = pick (basis, 20.0, 11.0, 23.0, 59.0);
-  const double gradient = 22.0 + products + 4.0 * (n - 1.0) + 2.0 + slopes + 15.0;
+  const bool is_functional = constraint == erkpa::lanes::Constraint::FUNCTIONAL;
+  const double n = sizeOf (basis), products = pick (basis, 1.0, 10.0, 15.0, 35.0);
+  const double value = 23.0 + 2.0 * products + (is_functional ? 7.0 + 2.0 * n : 2.0 * (n - 1.0));
+  const double slopes = is_functional ? pick (basis, 20.0, 13.0, 13.0, 13.0) : pick (basis, 0.0, 11.0, 23.0, 59.0);
+  const double gradient = 30.0 + pick (basis, 0.0, 0.0, 0.0, 6.0) + 4.0 * (n - 1.0) + 2.0 + slopes + 15.0;
   return gradients ? value + gradient : value;
 }
 
@@ -166,7 +166,8 @@ LaneProblem::evaluate (const erkpa::lanes::Engine &engine)
   for (std::size_t a = 0; a < 3; ++a)
     samples.gradient[a] = gradients_[a].data ();
   samples.border_offset = border_offsets_.data ();
-  engine.evaluate (settings_, nodes, points, erkpa::lanes::SharpSurfaces{}, {list_.data (), near_.data (), rows_.data ()}, samples);
+  engine.evaluate (settings_, nodes, points, erkpa::lanes::SharpSurfaces{},
+                   {list_.data (), near_.data (), rows_.data ()}, samples);
 }
 
 std::size_t

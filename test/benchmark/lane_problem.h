@@ -12,26 +12,26 @@ namespace bench
 
 /** \brief Floating-point operations that a node takes at an evaluation point in whose support it is.
  *
- * Counted from the formulas of lane_fit.h, lane_terms.h and the paper's kernel, Hermite constraints without values of
- * the nodes (functional ones for the constant basis, which has no gradient to fit): sums, products, quotients and roots
- * are one, multiply-adds two. Comparisons, selections and conversions are none, and what does not grow with the nodes
- * is left out: the system's solution, and the search for the k-th neighbour with the nodes that turn out to be too far.
+ * Counted from lane_weights.h, lane_moments.h, lane_fit.h and the paper's kernel, nodes without values: sums, products
+ * and estimates of roots are one, multiply-adds two. Comparisons, selections and conversions are none, and what does
+ * not grow with the nodes of a point is left out: the system's solution, the search for the k-th neighbour with the
+ * nodes that turn out to be too far, and what a node brings to all points alike.
  *
- *     x_i - x, its square, t, w(t)                          8 + 2 + 8
- *     w R                                                   n - 1, and 6 for the quadratic basis' products
- *     M += w R R^T (eq. 17)                                 n + n (n - 1)
- *     right-hand side                                       6 linear, 14 spherical, 36 quadratic; 8 constant
+ *     x_i - x and its square, t, w(t)                     9 + 6 + 8
+ *     M and b of eq. (17)                                 2 for each different product of two terms, and with the
+ *                                                         Hermite constraint for each term that has a slope
+ *     what eq. (2) asks for, where it is fitted           7 + 2 n
  *
  * and for gradients, which sum a second time over the nodes,
  *
- *     x_i - x, its square, t, w(t), u, t²                   18 + 3 + 1, and 6 for the quadratic basis' products
- *     the fit's and the shape function's values             4 (n - 1), and 2 for their product
- *     their gradients                                       11, with 12 for the spherical basis and 48 for the
- * quadratic; constant: 7 for the centroid and 13 for eq. (2) dw/dt / t, the force, what moves with x and with ε    4 +
- * 1 + 6 + 4
+ *     the same, with u and t²                             23 + 3 + 3 + 1, and 6 for the quadratic basis' products
+ *     the fit's and the shape function's values           4 (n - 1), and 2 for their product
+ *     their gradients                                     11, with 12 for the spherical and 48 for the quadratic basis
+ *     eq. (2) instead                                     13, and 7 for the constant basis' centroid
+ *     dw/dt / t, the force, what moves with x and ε       4 + 1 + 6 + 4
  */
 double
-flopsPerPair (erkpa::lanes::Basis basis, bool gradients);
+flopsPerPair (erkpa::lanes::Basis basis, erkpa::lanes::Constraint constraint, bool gradients);
 
 /** \brief What a benchmark evaluates. */
 struct LaneCase
