@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include "lane_nearest.h"
 #include "lane_search.h"
 
 namespace erkpa::lanes
@@ -13,7 +14,6 @@ class LaneSupport
 public:
   static constexpr std::size_t WIDTH = B::size;
   static constexpr std::size_t NORMAL = 3, LAMBDA = 6, CONFIDENCE = 7; // columns
-  static constexpr std::size_t LARGEST = 3;                            // see largestWithin ()
 
   /** \brief Take up the points of some lanes.
    * \param[in] first place of the evaluation point in the first lane
@@ -255,109 +255,24 @@ private:
       reach = one > reach ? one : reach;
   }
 
-  B
-  row (std::size_t i) const
-  {
-    return B::load_unaligned (rows_ + WIDTH * i);
-  }
-
-  /** \brief How many of the rows are at most \a squared.
-   *
-   * In four sums, since one would wait for itself.
-   */
-  B
-  countWithin (B squared) const
-  {
-    const B one (1.0f);
-    B counts[4] = {B (0.0f), B (0.0f), B (0.0f), B (0.0f)};
-    const auto add = [&] (std::size_t i, B &count) { count = xsimd::select (row (i) <= squared, count + one, count); };
-    std::size_t i = 0;
-    for (; i + 4 <= listed_; i += 4)
-      for (std::size_t j = 0; j < 4; ++j)
-        add (i + j, counts[j]);
-    for (; i < listed_; ++i)
-      add (i, counts[0]);
-    return (counts[0] + counts[1]) + (counts[2] + counts[3]);
-  }
-
-  /** \brief ε = distance to the k-th node, from a bound of it and a guess.
-   *
-   * The number of nodes within a distance grows about as its square. The bounds close in on a square within which there
-   * are k or little more, of which the largest ones tell the k-th; where many distances are equal, single steps from
-   * node to node find it.
-   */
+  /** \brief ε = distance to the k-th node, from a bound of it and a guess. */
   void
   findNearest (B guess)
   {
-    constexpr int STEPS = 10, EVEN = 5;
-    B low (0.0f), high = radius_ * radius_ * B (1.0f + 1e-5f);
     listWithin (this, 1, nodes_->on_surface, 3);
     measureDistances ();
-    B in_low (0.0f), in_high = countWithin (high);
-    B middle = xsimd::min (guess * guess, high);
-    const B k (k_), enough (k_ + static_cast<float> (LARGEST - 1)), wanted (k_ + 0.5f * static_cast<float> (LARGEST));
-    for (int step = 0; step < STEPS && xsimd::any (in_high > enough); ++step)
-    {
-      const B count = countWithin (middle);
-      const auto is_enough = count >= k;
-      high = xsimd::select (is_enough, middle, high);
-      in_high = xsimd::select (is_enough, count, in_high);
-      low = xsimd::select (is_enough, low, middle);
-      in_low = xsimd::select (is_enough, in_low, count);
-      const B share = step < EVEN ? (wanted - in_low) / xsimd::max (in_high - in_low, B (1.0f)) : B (0.5f);
-      middle = xsimd::fma (xsimd::min (share, B (0.9f)), high - low, low);
-      middle = xsimd::select (in_high > enough, middle, high);
-    }
-    kth_ = largestWithin (high, in_high - k);
+    LaneNearest<B> nearest (rows_, listed_, k_);
+    nearest.find (radius_ * radius_ * B (1.0f + 1e-5f), guess * guess);
+    kth_ = nearest.squared ();
+    const auto has_fewer = nearest.found () < B (k_);
     if (!is_limited_)
-      short_ = xsimd::select (in_high < k, B (1.0f), B (0.0f));
+      short_ = xsimd::select (has_fewer, B (1.0f), B (0.0f));
     else
     {
-      at_limit_ = xsimd::select (in_high < k, B (1.0f), B (0.0f));
-      kth_ = xsimd::select (in_high < k, radius_ * radius_, kth_);
+      at_limit_ = xsimd::select (has_fewer, B (1.0f), B (0.0f));
+      kth_ = xsimd::select (has_fewer, radius_ * radius_, kth_);
     }
-    if (xsimd::any (in_high > enough))
-      stepToKth (low, in_low, in_high > enough);
     radius_ = xsimd::sqrt (kth_);
-  }
-
-  /** \brief The largest of the rows within a bound, or the next one, or that after it, by their number above. */
-  B
-  largestWithin (B bound, B above) const
-  {
-    static_assert (LARGEST == 3);
-    B largest[LARGEST] = {B (0.0f), B (0.0f), B (0.0f)};
-    for (std::size_t i = 0; i < listed_; ++i)
-    {
-      B next = xsimd::select (row (i) <= bound, row (i), B (0.0f));
-      for (B &one : largest)
-      {
-        const B less = xsimd::min (one, next);
-        one = xsimd::max (one, next);
-        next = less;
-      }
-    }
-    const B of_two = xsimd::select (above > B (0.5f), largest[1], largest[0]);
-    return xsimd::select (above > B (1.5f), largest[2], of_two);
-  }
-
-  template <typename MaskT>
-  void
-  stepToKth (B low, B in_low, MaskT open)
-  {
-    const B k (k_), far (3e38f);
-    auto searching = open;
-    low = xsimd::select (in_low > B (0.5f), low, B (-1.0f));
-    for (std::size_t step = 0; step <= listed_ && xsimd::any (searching); ++step)
-    {
-      B next = far;
-      for (std::size_t i = 0; i < listed_; ++i)
-        next = xsimd::min (next, xsimd::select (row (i) > low, row (i), far));
-      const auto reached = countWithin (next) >= k;
-      kth_ = xsimd::select (searching && reached, next, kth_);
-      searching = searching && !reached;
-      low = next;
-    }
   }
 
   const Nodes *nodes_;

@@ -30,7 +30,7 @@ fnma (const B &a, const B &b, const B &c)
     return xsimd::fnma (a, b, c);
 }
 
-/** \brief The processor's estimate of 1/√s. */
+/** \brief The processor's estimate of 1/√s, to a dozen bits at least. */
 template <typename B>
 B
 inverseRoot (const B &s)
@@ -40,7 +40,11 @@ inverseRoot (const B &s)
     return _mm512_rsqrt14_ps (s);
   else
 #endif
+#if defined(__x86_64__) || defined(__i386__)
     return xsimd::rsqrt (s);
+#else
+  return B (1.0f) / xsimd::sqrt (s); // other estimates are too coarse for one Newton step
+#endif
 }
 
 template <typename B>
