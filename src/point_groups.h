@@ -18,7 +18,7 @@ struct PointGroup
 };
 
 /** \brief Groups of points, about as large as the blocks of a grid: each shares one gathering of the field's nodes.
- * \param[in] position_of position_of (i) is the i-th point
+ * \param[in] position_of position_of (i) is the i-th point, which stays
  */
 template <typename PositionOfT>
 std::vector<PointGroup>
@@ -30,7 +30,7 @@ groupPoints (std::size_t count, double voxel, PositionOfT position_of)
   Eigen::AlignedBox3d box;
   for (std::size_t i = 0; i < count; ++i)
   {
-    const Eigen::Vector3d x = position_of (i);
+    const Eigen::Vector3d &x = position_of (i);
     Eigen::AlignedBox3d grown = box;
     grown.extend (x);
     if (groups.empty () || i - groups.back ().first == MOST || 0.5 * grown.diagonal ().norm () > EXTENT * voxel)

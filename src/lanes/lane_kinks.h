@@ -261,7 +261,7 @@ private:
       for (int i = 0; i < 3; ++i)
         slope[i] = is_on ? scale * lower.gradient[i][node] : 0.0f;
     };
-    float height, slope[3], height_behind, slope_behind[3];
+    float height = 0.0f, slope[3], height_behind = 0.0f, slope_behind[3];
     piece (1.0f, height, slope);
     piece (-1.0f, height_behind, slope_behind);
     value = xsimd::select (is_behind_[k], B (height_behind), B (height)) * scale_;

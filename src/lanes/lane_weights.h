@@ -129,8 +129,8 @@ private:
     {
       B u[3];
       support_.offset (i + n, u);
-      for (int a = 0; a < 3; ++a)
-        u[a] *= scale;
+      for (B &along : u)
+        along *= scale;
       visit (i + n, squared[n], t[n], u);
     }
   }
