@@ -185,9 +185,7 @@ TEST_F (BlockFieldTest, AgreesWithTheDefinitionInABallOfManySupports)
   for (const Order order : {Order::LINEAR, Order::SPHERICAL, Order::QUADRATIC})
     for (const bool is_fixed : {false, true})
     {
-      FieldOptions options = optionsOf (order, is_fixed ? 0 : 20);
-      options.radius = is_fixed ? 0.1 : 0.0;
-      const auto field = shapes::field (wavySheet (), options);
+      const auto field = shapes::field (wavySheet (), is_fixed ? optionsOf (order, 0, 0.1) : optionsOf (order, 20));
       const double radius = field->typicalRadius (), extent = 9.0 * radius;
       std::size_t engines = 0;
       const erkpa::lanes::Engine *const *engine = erkpa::lanes::engines (engines);
