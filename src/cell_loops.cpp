@@ -169,14 +169,21 @@ struct LoopTable
 
 } // namespace
 
+const CellLoops *
+loopsOfSigns (std::size_t inside)
+{
+  static const LoopTable table;
+  return table.is_ambiguous[inside] ? nullptr : &table.loops[inside];
+}
+
 CellLoops
 traceLoops (const std::array<double, 8> &values)
 {
-  static const LoopTable table;
   Index inside = 0;
   for (Index corner = 0; corner < 8; ++corner)
     inside |= values[corner] < 0.0 ? Index (1) << corner : 0;
-  return table.is_ambiguous[inside] ? followFaces (values) : table.loops[inside];
+  const CellLoops *const loops = loopsOfSigns (inside);
+  return loops != nullptr ? *loops : followFaces (values);
 }
 
 } // namespace erkpa

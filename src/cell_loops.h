@@ -35,6 +35,10 @@ struct CellLoops
   std::array<LoopEdges, 4> edges{};      ///< the edges of each loop
 };
 
+/** \brief The loops of a cell with some corners inside, as bits; null where their values have to tell them. */
+const CellLoops *
+loopsOfSigns (std::size_t inside);
+
 /** \brief Trace the loops through the faces of a cell.
  *
  * On a face with two opposite corners inside, the saddle of the bilinear interpolant decides which corners are

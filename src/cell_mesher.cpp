@@ -2,7 +2,7 @@
 #include "cell_mesher.h"
 
 #include "crease_turn.h"
-#include "grid_window.h"
+#include "grid_bits.h"
 #include "loop_triangulation.h"
 #include "parallel_collect.h"
 
@@ -46,35 +46,79 @@ triangulateRing (const int *ring, std::size_t size, const LoopEdges &edges, cons
   return true;
 }
 
-/** \brief Meshes the cells of one stretch. */
+/** \brief Meshes the active cells of blocks. */
 class CellMesher
 {
 public:
-  CellMesher (const SparseGrid &grid, const SurfaceVertices &vertices) : window_ (grid), vertices_ (vertices) {}
+  CellMesher (const SparseGrid &grid, const SurfaceVertices &vertices) : grid_ (grid), vertices_ (vertices) {}
 
   void
-  mesh (const GridPoint &cell, CellMesh &mesh)
+  meshBlock (int index, CellMesh &mesh)
   {
-    window_.moveTo (cell);
-    const CellLoops loops = traceLoops (window_.cornerValues (cell));
-    for (std::size_t l = 0; l < loops.count; ++l)
+    const GridBlock &block = grid_.block (index);
+    if (block.active == 0)
+      return;
+    std::array<std::uint64_t, 8> inside{};
+    for (std::size_t above = 0; above < 8; ++above)
+      if (block.above[above] >= 0)
+        inside[above] = grid_.block (block.above[above]).inside;
+    inside = grid_bits::atCorners (inside);
+    findActiveBeyond (block);
+    for (std::uint64_t left = block.active; left != 0; left &= left - 1)
     {
-      edges_ = loops.edges[l];
-      size_ = loops.lengths[l];
-      for (std::size_t i = 0; i < size_; ++i)
-      {
-        const CellEdge edge = cellEdge (edges_[i]);
-        ring_[i] = window_.vertexOnEdge (cell + cornerOffset (edge.corner), edge.axis);
-      }
-      if (mayHaveCrease ())
-        mesh.mixed_loops.push_back ({{ring_.begin (), ring_.begin () + size_}, edges_});
-      else if (!triangulateRing (ring_.data (), size_, edges_, vertices_, mesh.triangles))
-        mesh.centered_loops.push_back ({{ring_.begin (), ring_.begin () + size_}, edges_});
-      findBorder (cell, mesh.border);
+      const GridPlace cell{index, __builtin_ctzll (left)};
+      std::size_t corners = 0;
+      for (std::size_t corner = 0; corner < 8; ++corner)
+        corners |= static_cast<std::size_t> (inside[corner] >> cell.local & 1) << corner;
+      meshCell (cell, corners, mesh);
     }
   }
 
 private:
+  /** \brief Those cells of a block beyond whose faces the cells are active, too. */
+  void
+  findActiveBeyond (const GridBlock &block)
+  {
+    const auto active_in = [this] (int other) { return other >= 0 ? grid_.block (other).active : 0; };
+    for (int axis = 0; axis < 3; ++axis)
+    {
+      const auto a = static_cast<std::size_t> (axis);
+      int below = block.below[a];
+      if (below < 0 && (block.active & grid_bits::FIRST[axis]) != 0)
+        below = grid_.find (block.first + GridPoint{axis == 0 ? -4 : 0, axis == 1 ? -4 : 0, axis == 2 ? -4 : 0}).block;
+      active_beyond_[2 * a] = grid_bits::up (block.active, axis) | grid_bits::intoAbove (active_in (below), axis);
+      active_beyond_[2 * a + 1] = grid_bits::down (block.active, axis) |
+                                  grid_bits::intoBelow (active_in (block.above[std::size_t (1) << a]), axis);
+    }
+  }
+
+  void
+  meshCell (const GridPlace &cell, std::size_t inside, CellMesh &mesh)
+  {
+    CellLoops traced;
+    const CellLoops *loops = loopsOfSigns (inside);
+    if (loops == nullptr)
+    {
+      traced = traceLoops (grid_.cornerValues (cell));
+      loops = &traced;
+    }
+    for (std::size_t l = 0; l < loops->count; ++l)
+    {
+      const LoopEdges &edges = loops->edges[l];
+      size_ = loops->lengths[l];
+      for (std::size_t i = 0; i < size_; ++i)
+      {
+        const CellEdge edge = cellEdge (edges[i]);
+        ring_[i] = grid_.vertexOnEdge (cell, edge.corner, edge.axis);
+      }
+      if (mayHaveCrease ())
+        mesh.mixed_loops.push_back ({{ring_.begin (), ring_.begin () + size_}, edges});
+      else if (!triangulateRing (ring_.data (), size_, edges, vertices_, mesh.triangles))
+        mesh.centered_loops.push_back ({{ring_.begin (), ring_.begin () + size_}, edges});
+      findBorder (cell, edges, mesh.border);
+    }
+  }
+
   /** \brief Whether neighbours lie on different sides of sharp surfaces, and do not look the same way. */
   bool
   mayHaveCrease () const
@@ -90,23 +134,21 @@ private:
 
   /** \brief The sides of the loop in faces whose other cell has no surface. */
   void
-  findBorder (const GridPoint &cell, std::vector<int> &border)
+  findBorder (const GridPlace &cell, const LoopEdges &edges, std::vector<int> &border) const
   {
     for (std::size_t i = 0; i < size_; ++i)
     {
       const std::size_t next = i + 1 < size_ ? i + 1 : 0;
-      const int face = commonFace (edges_[i], edges_[next]), step = face & 1 ? 1 : -1;
-      const GridPoint across{cell.x + (face / 2 == 0 ? step : 0), cell.y + (face / 2 == 1 ? step : 0),
-                             cell.z + (face / 2 == 2 ? step : 0)};
-      if (!window_.isActive (across))
+      const auto face = static_cast<std::size_t> (commonFace (edges[i], edges[next]));
+      if ((active_beyond_[face] & cell.bit ()) == 0)
         border.insert (border.end (), {ring_[i], ring_[next]});
     }
   }
 
-  GridWindow window_;
+  const SparseGrid &grid_;
   const SurfaceVertices &vertices_;
-  std::array<int, 12> ring_{}; // of the loop at hand
-  LoopEdges edges_{};
+  std::array<std::uint64_t, 6> active_beyond_{}; // per face
+  std::array<int, 12> ring_{};                   // of the loop at hand
   std::size_t size_ = 0;
 };
 
@@ -126,10 +168,11 @@ addFan (const std::vector<int> &ring, int center, std::vector<Triangle> &triangl
 }
 
 CellMesh
-meshCells (const SparseGrid &grid, const std::vector<GridPoint> &cells, int threads, const SurfaceVertices &vertices)
+meshCells (const SparseGrid &grid, int threads, const SurfaceVertices &vertices)
 {
-  constexpr std::size_t STRETCH = 4096;
-  const std::size_t count = (cells.size () + STRETCH - 1) / STRETCH;
+  constexpr std::size_t STRETCH = 256, TRIANGLES = 40; // blocks, and what many of them have
+  const auto blocks = static_cast<std::size_t> (grid.blockCount ());
+  const std::size_t count = (blocks + STRETCH - 1) / STRETCH;
   std::vector<std::vector<Triangle>> triangles (count);
   std::vector<std::vector<CellLoop>> centered (count), mixed (count);
   std::vector<std::vector<int>> border (count);
@@ -139,9 +182,9 @@ meshCells (const SparseGrid &grid, const std::vector<GridPoint> &cells, int thre
       {
         CellMesher mesher (grid, vertices);
         CellMesh part;
-        part.triangles.reserve (2 * STRETCH + STRETCH / 2);
-        for (std::size_t c = i * STRETCH; c < std::min (cells.size (), (i + 1) * STRETCH); ++c)
-          mesher.mesh (cells[c], part);
+        part.triangles.reserve (STRETCH * TRIANGLES);
+        for (std::size_t index = i * STRETCH; index < std::min (blocks, (i + 1) * STRETCH); ++index)
+          mesher.meshBlock (static_cast<int> (index), part);
         triangles[i].swap (part.triangles);
         centered[i].swap (part.centered_loops);
         mixed[i].swap (part.mixed_loops);

@@ -26,9 +26,9 @@ struct CellMesh
   std::vector<int> border; ///< vertices of the sides beyond which the surface does not go on, each once or more
 };
 
-/** \brief Turn the loops of cells into triangles over the placed vertices, in the order of the cells. */
+/** \brief Turn the loops of the active cells into triangles over the placed vertices, block after block. */
 CellMesh
-meshCells (const SparseGrid &grid, const std::vector<GridPoint> &cells, int threads, const SurfaceVertices &vertices);
+meshCells (const SparseGrid &grid, int threads, const SurfaceVertices &vertices);
 
 /** \brief Triangulate one loop without new vertices; false where it needs one. */
 bool

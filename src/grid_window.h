@@ -62,28 +62,6 @@ public:
     return place.block >= 0 && (grid_.block (place.block).active & place.bit ()) != 0;
   }
 
-  /** \brief Values at the 8 corners of a cell of the block in the middle. */
-  std::array<double, 8>
-  cornerValues (const GridPoint &cell)
-  {
-    std::array<double, 8> values;
-    for (int corner = 0; corner < 8; ++corner)
-    {
-      const GridPlace place = find (cell + cornerOffset (corner));
-      values[static_cast<std::size_t> (corner)] =
-          static_cast<double> (grid_.block (place.block).values[static_cast<std::size_t> (place.local)]);
-    }
-    return values;
-  }
-
-  /** \brief The vertex on the edge from \a node along \a axis; the edge must be cut. */
-  int
-  vertexOnEdge (const GridPoint &node, int axis)
-  {
-    const GridPlace place = find (node);
-    return SparseGrid::vertexOnEdge (grid_.block (place.block), place.local, axis);
-  }
-
 private:
   static constexpr int UNKNOWN = -2;
   static constexpr std::size_t MIDDLE = 13;

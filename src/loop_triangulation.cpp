@@ -17,7 +17,7 @@ class LoopTriangulator
 public:
   static constexpr double FORBIDDEN = 1e12; // of the polygon's squared size
 
-  explicit LoopTriangulator (const LoopShape &loop) : loop_ (loop), size_ (loop.size)
+  explicit LoopTriangulator (const LoopShape &loop) : loop_ (loop), size_ (loop.size), is_flat_ (isFlat (loop))
   {
     for (int i = 1; i < size_; ++i)
     {
@@ -47,6 +47,22 @@ public:
   }
 
 private:
+  /** \brief Whether the vertices look the same way, so that all triangulations agree with them alike. */
+  static bool
+  isFlat (const LoopShape &loop)
+  {
+    constexpr double LEAST_COSINE = 0.9994; // 2 degrees
+    const auto size = static_cast<std::size_t> (loop.size);
+    Eigen::Vector3d sum = loop.normals[0];
+    for (std::size_t i = 1; i < size; ++i)
+      sum += loop.normals[i];
+    const double least = LEAST_COSINE * sum.norm ();
+    bool is_flat = least > 0.0;
+    for (std::size_t i = 0; i < size; ++i)
+      is_flat = is_flat && loop.normals[i].dot (sum) >= least;
+    return is_flat;
+  }
+
   struct Entry
   {
     double cost;
@@ -71,7 +87,8 @@ private:
     Entry best{0.0, 0};
     for (int apex = i + 1; apex < j; ++apex)
     {
-      const double cost = entry (i, apex).cost + entry (apex, j).cost + costOfTriangle (i, apex, j);
+      const double of_triangle = is_flat_ ? 0.0 : costOfTriangle (i, apex, j);
+      const double cost = entry (i, apex).cost + entry (apex, j).cost + of_triangle;
       if (best.apex == 0 || cost < best.cost)
         best = {cost, apex};
     }
@@ -101,6 +118,7 @@ private:
 
   const LoopShape &loop_;
   int size_;
+  bool is_flat_;
   double scale_ = 0.0;
   std::array<std::array<Entry, 12>, 12> entries_;
 };

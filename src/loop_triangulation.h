@@ -29,7 +29,7 @@ struct LoopTriangles
  *
  * No chord joins two vertices of one face: the neighbour cell could use the same one, and four triangles would meet
  * there. Among the other triangulations takes the one whose triangles agree best with the vertex normals, and with
- * the shorter chords where they agree alike.
+ * the shorter chords where they agree alike: in flat loops the chords alone tell.
  * \param[out] triangles the triangles
  * \return false where every triangulation needs a forbidden chord; the best of them is given then
  */

@@ -212,7 +212,7 @@ meshSurface (const ImplicitField &field, const PolygonizerOptions &options, cons
 {
   const StageClock clock (report.seconds_triangles);
   const double voxel = report.voxel_size;
-  CellMesh cell_mesh = meshCells (grid, tracker.activeCells (), options.threads, vertices);
+  CellMesh cell_mesh = meshCells (grid, options.threads, vertices);
   const std::size_t at_middles = vertices.positions.size ();
   std::vector<Triangle> triangles = std::move (cell_mesh.triangles);
   meshCentered (cell_mesh.centered_loops, triangles, vertices);

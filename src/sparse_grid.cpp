@@ -11,12 +11,6 @@ namespace erkpa
 namespace
 {
 
-int
-countBits (std::uint64_t bits)
-{
-  return __builtin_popcountll (bits);
-}
-
 std::vector<BlockPart>
 makeParts (int side)
 {
@@ -121,16 +115,11 @@ SparseGrid::find (const GridPoint &point) const
 GridPlace
 SparseGrid::step (const GridPlace &from, int step) const
 {
-  constexpr int LAST[3] = {3, 3 << 2, 3 << 4}, UNIT[3] = {1, 1 << 2, 1 << 4};
-  int over = 0, local = from.local;
-  for (int axis = 0; axis < 3; ++axis)
-  {
-    if ((step >> axis & 1) == 0)
-      continue;
-    const bool leaves = (local & LAST[axis]) == LAST[axis];
-    over |= leaves ? 1 << axis : 0;
-    local += leaves ? -LAST[axis] : UNIT[axis];
-  }
+  // The coordinates with a bit between them, into which goes what leaves the block.
+  const int l = from.local, spread = (l & 3) | (l & 12) << 1 | (l & 48) << 2;
+  const int sum = spread + ((step & 1) | (step & 2) << 2 | (step & 4) << 4);
+  const int over = (sum >> 2 & 1) | (sum >> 4 & 2) | (sum >> 6 & 4);
+  const int local = (sum & 3) | (sum >> 1 & 12) | (sum >> 2 & 48);
   if (over == 0)
     return {from.block, local};
   const GridBlock &origin = block (from.block);
@@ -189,20 +178,13 @@ SparseGrid::numberVertices ()
   for (int index = 0; index < block_count_; ++index)
   {
     GridBlock &block = this->block (index);
-    block.first_vertex = count;
-    for (const std::uint64_t bits : block.cut)
-      count += countBits (bits);
+    for (std::size_t axis = 0; axis < 3; ++axis)
+    {
+      block.first_vertex[axis] = count;
+      count += __builtin_popcountll (block.cut[axis]);
+    }
   }
   return count;
-}
-
-int
-SparseGrid::vertexOnEdge (const GridBlock &block, int node, int axis)
-{
-  int vertex = block.first_vertex;
-  for (int a = 0; a < axis; ++a)
-    vertex += countBits (block.cut[static_cast<std::size_t> (a)]);
-  return vertex + countBits (block.cut[static_cast<std::size_t> (axis)] & ((std::uint64_t (1) << node) - 1));
 }
 
 } // namespace erkpa

@@ -40,7 +40,7 @@ struct GridBlock
   GridPoint first;                    ///< lowest node
   std::array<int, 8> above;           ///< the blocks at + 4 along the axes of the bits; -1 where not looked for yet
   std::array<int, 3> below;           ///< those at - 4 along each axis, likewise
-  int first_vertex = 0;               ///< index of the block's first vertex
+  std::array<int, 3> first_vertex{};  ///< index of the first vertex on its edges along each axis
   std::uint64_t known = 0;            ///< nodes whose value is there
   std::uint64_t needed = 0;           ///< nodes whose value is asked for
   std::uint64_t inside = 0;           ///< known nodes with f < iso
@@ -191,7 +191,11 @@ public:
   }
 
   static int
-  vertexOnEdge (const GridBlock &block, int node, int axis);
+  vertexOnEdge (const GridBlock &block, int node, int axis)
+  {
+    const std::uint64_t before = block.cut[static_cast<std::size_t> (axis)] & ((std::uint64_t (1) << node) - 1);
+    return block.first_vertex[static_cast<std::size_t> (axis)] + __builtin_popcountll (before);
+  }
 
 private:
   static constexpr std::size_t CHUNK = 128;

@@ -46,7 +46,6 @@ SurfaceTracker::track ()
   if (active_count_ > MAX_ACTIVE_CELLS)
     return {Status::GRID_TOO_FINE, "the surface crosses more than " + std::to_string (MAX_ACTIVE_CELLS) +
                                        " grid cells: use a larger voxel size or a lower resolution"};
-  listActiveCells ();
   return {};
 }
 
@@ -220,24 +219,6 @@ SurfaceTracker::handOn (int index, std::uint64_t cells, int axis, bool up)
   const int coordinate = (axis == 0 ? first.x : axis == 1 ? first.y : first.z) + (up ? 4 : -4);
   if (leaving != 0 && std::abs (coordinate) + 4 < SparseGrid::LIMIT)
     addToFront (up ? grid_.placeAbove (index, 1 << axis) : grid_.placeBelow (index, axis), leaving);
-}
-
-void
-SurfaceTracker::listActiveCells ()
-{
-  constexpr std::size_t STRETCH = 2048;
-  active_ = parallelCollect<GridPoint> (
-      static_cast<std::size_t> (grid_.blockCount ()), options_.threads,
-      [this] (std::size_t first, std::size_t last, std::vector<GridPoint> &found)
-      {
-        for (std::size_t index = first; index < last; ++index)
-        {
-          const GridBlock &block = grid_.block (static_cast<int> (index));
-          for (std::uint64_t left = block.active; left != 0; left &= left - 1)
-            found.push_back (SparseGrid::pointAt (block, __builtin_ctzll (left)));
-        }
-      },
-      STRETCH);
 }
 
 void

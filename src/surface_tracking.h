@@ -34,13 +34,6 @@ public:
   Outcome
   track ();
 
-  /** \brief The active cells, block after block. */
-  const std::vector<GridPoint> &
-  activeCells () const
-  {
-    return active_;
-  }
-
   std::size_t
   nodeCount () const
   {
@@ -86,9 +79,6 @@ private:
   handOn (int block, std::uint64_t cells, int axis, bool up);
 
   void
-  listActiveCells ();
-
-  void
   seedFromNodes ();
 
   void
@@ -103,7 +93,6 @@ private:
   PolygonizerReport &report_;
   ProgressCallback progress_;
   std::vector<int> front_, next_front_; // blocks with fresh cells
-  std::vector<GridPoint> active_;
   std::size_t active_count_ = 0;
   std::vector<int> requested_blocks_;
   bool foresees_ = false;                               // see BlockEvaluator
