@@ -2,6 +2,7 @@
 #include "block_enrichment.h"
 
 #include "enrichment.h"
+#include "support_size.h"
 
 #include <algorithm>
 #include <cmath>
@@ -12,12 +13,12 @@ namespace erkpa
 namespace
 {
 
+using Kind = SharpSurfaceParts::Kind;
+
 /** \brief Whether a surface is in force everywhere and cheap to ask. */
 bool
-isPlainModel (const SharpSurface &surface)
+isPlainModel (const SharpSurfaceParts &parts)
 {
-  const SharpSurfaceParts parts = surface.parts ();
-  using Kind = SharpSurfaceParts::Kind;
   return parts.kind == Kind::MODEL ||
          (parts.plane != nullptr && (parts.kind == Kind::BETWEEN || parts.kind == Kind::REVERSED));
 }
@@ -34,8 +35,11 @@ BlockEnrichment::BlockEnrichment (const ImplicitField &field, double unit)
   {
     const SpaceWarp *warp = nullptr;
     is_plane_.push_back (planeBehind (*surface, &warp) != nullptr && warp == nullptr ? 1 : 0);
-    is_handled_.push_back (can_evaluate_ && isPlainModel (*surface) ? 1 : 0);
-    planes_.push_back (surface->parts ().plane);
+    parts_.push_back (surface->parts ());
+    const SharpSurfaceParts whole =
+        parts_.back ().kind == Kind::LIMITED ? parts_.back ().surface->parts () : parts_.back ();
+    is_handled_.push_back (can_evaluate_ && isPlainModel (whole) ? 1 : 0);
+    planes_.push_back (whole.plane);
   }
 }
 
@@ -95,10 +99,12 @@ BlockEnrichment::run (const lanes::Engine &engine, const lanes::Settings &settin
     else
       evaluateAtNodes (nodes, values);
     evaluateAtPoints (places, values);
+    measureExtentAtPoints (places, values);
   }
   lanes::SharpSurfaces sharp = view ();
   const bool has_all = listPencils (sharp) && wanted <= values_.size ();
-  points.run (engine, settings, nodes.view (settings.gradients), false, &sharp);
+  const bool is_function = field_.supportSize ().kind () == SupportSize::Kind::FUNCTION;
+  points.run (engine, settings, nodes.view (settings.gradients), is_function, &sharp);
   if (!has_all)
     std::fill_n (points.states.begin (), points.size (), lanes::State::UNSETTLED);
 }
@@ -157,6 +163,26 @@ BlockEnrichment::evaluateAtPoints (const std::vector<Eigen::Vector3d> &places, V
   }
 }
 
+void
+BlockEnrichment::measureExtentAtPoints (const std::vector<Eigen::Vector3d> &places, Values &values) const
+{
+  const Extent *const extent = parts_[static_cast<std::size_t> (values.surface)].extent.get ();
+  const std::size_t padded = extent != nullptr ? places.size () + lanes::MAX_WIDTH : 0;
+  values.distance_at.resize (padded);
+  for (std::vector<float> &component : values.away_at)
+    component.resize (padded);
+  double distance = 0.0;
+  Eigen::Vector3d away = Eigen::Vector3d::Zero ();
+  for (std::size_t i = 0; i < padded; ++i)
+  {
+    if (i < places.size ())
+      distance = extent->distance (places[i] + field_.points ().origin, &away);
+    values.distance_at[i] = static_cast<float> (distance * inverse_unit_);
+    for (std::size_t a = 0; a < 3; ++a)
+      values.away_at[a][i] = static_cast<float> (away[static_cast<Eigen::Index> (a)]);
+  }
+}
+
 lanes::SharpSurfaces
 BlockEnrichment::view () const
 {
@@ -172,7 +198,10 @@ BlockEnrichment::view () const
     {
       seen.gradient[a] = values.gradient[a].data ();
       seen.gradient_at[a] = values.gradient_at[a].data ();
+      seen.away_at[a] = values.away_at[a].data ();
     }
+    seen.distance_at = values.distance_at.empty () ? nullptr : values.distance_at.data ();
+    seen.fade = static_cast<float> (parts_[static_cast<std::size_t> (values.surface)].fade * inverse_unit_);
     seen.reversible = is_plane_[static_cast<std::size_t> (values.surface)] != 0;
     seen.squared = true;
   }

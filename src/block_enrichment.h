@@ -19,8 +19,8 @@ namespace erkpa
 /** \brief The sharp surfaces that enrich the field at points of one ball, as the lanes see them: Enrichment's quick
  * double.
  *
- * Kinks at models that are in force everywhere and their corners, for the Hermite constraint. What is limited, warped
- * or a function is left to LocalField.
+ * Kinks at models, limited or not, and their corners, for the Hermite constraint. What is warped or a function is left
+ * to LocalField.
  */
 class BlockEnrichment
 {
@@ -67,15 +67,16 @@ private:
   {
     int surface;
     bool is_plane;   ///< |θ| is the distance
-    bool is_handled; ///< in force everywhere, and cheap to ask
+    bool is_handled; ///< cheap to ask
   };
 
-  /** \brief A surface near the points, and θ and ∇θ at nodes and points. */
+  /** \brief A surface near the points, and θ and ∇θ at nodes and points; with the distance from its extent and ∇ of it
+   * there, where it has one. */
   struct Values
   {
     int surface;
-    std::vector<float> theta, theta_at;
-    std::array<std::vector<float>, 3> gradient, gradient_at;
+    std::vector<float> theta, theta_at, distance_at;
+    std::array<std::vector<float>, 3> gradient, gradient_at, away_at;
   };
 
   const SharpSurface &
@@ -96,6 +97,9 @@ private:
   void
   evaluateAtPoints (const std::vector<Eigen::Vector3d> &places, Values &values) const;
 
+  void
+  measureExtentAtPoints (const std::vector<Eigen::Vector3d> &places, Values &values) const;
+
   lanes::SharpSurfaces
   view () const;
 
@@ -106,7 +110,8 @@ private:
   double inverse_unit_;
   bool can_evaluate_;
   std::vector<char> is_handled_, is_plane_; // per surface of the field
-  std::vector<const SharpPlane *> planes_;  // the surface itself, where it is one
+  std::vector<const SharpPlane *> planes_;  // the surface itself, where it is one, or what is limited
+  std::vector<SharpSurfaceParts> parts_;
   std::vector<Near> near_;
   std::size_t used_ = 0; // of values_, whose memory is kept
   std::array<Values, lanes::MAX_SURFACES> values_;

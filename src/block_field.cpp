@@ -142,8 +142,7 @@ BlockField::addPoint (const Eigen::Vector3d &x)
   const double reach = enrichment_.isEmpty () ? 0.0 : reachAt (x);
   if (!enrichment_.isAbsentAt (x, reach))
   {
-    const bool by_nearest = field_.supportSize ().kind () == SupportSize::Kind::NEAREST;
-    if (is_at_faces || !by_nearest || !enrichment_.canEvaluateAt (x, reach))
+    if (is_at_faces || !enrichment_.canEvaluateAt (x, reach))
       return false;
     places_.push_back ({true, static_cast<std::uint32_t> (enriched_.size ()), -1});
     enriched_.add (scaled);
@@ -220,8 +219,7 @@ BlockField::finishPlain ()
 {
   for (std::size_t i = 0; i < plain_.size (); ++i)
     support_nodes_ += plain_.supports[i];
-  if (field_.supportSize ().kind () == SupportSize::Kind::FUNCTION)
-    refuseUncovered ();
+  refuseUncovered (plain_);
   if (!at_faces_.empty ())
     faces_.combine (settings_, center_radius_, at_faces_, plain_);
 }
@@ -238,15 +236,18 @@ BlockField::finishEnriched ()
                                   static_cast<double> (enriched_.radii[i]), static_cast<double> (enriched_.asides[i])))
       enriched_.in_reach[i] = 0;
   }
+  refuseUncovered (enriched_);
 }
 
 /** \brief A radius that is a function may reach farther than was gathered for: see Support::covers (). */
 void
-BlockField::refuseUncovered ()
+BlockField::refuseUncovered (BlockPoints &points) const
 {
-  for (std::size_t i = 0; i < plain_.size (); ++i)
-    if (unit_ * static_cast<double> (plain_.position (i).norm () + plain_.bound (i)) > reach_ * (1.0 + ROUNDING))
-      plain_.states[i] = lanes::State::UNSETTLED;
+  if (field_.supportSize ().kind () != SupportSize::Kind::FUNCTION)
+    return;
+  for (std::size_t i = 0; i < points.size (); ++i)
+    if (unit_ * static_cast<double> (points.position (i).norm () + points.bound (i)) > reach_ * (1.0 + ROUNDING))
+      points.states[i] = lanes::State::UNSETTLED;
 }
 
 int

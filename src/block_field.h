@@ -189,7 +189,7 @@ private:
   finishEnriched ();
 
   void
-  refuseUncovered ();
+  refuseUncovered (BlockPoints &points) const;
 
   const BlockPoints &
   at (std::size_t point) const

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <erkpa/extent.h>
-#include <erkpa/neighbor_search.h>
+
+#include "point_grid.h"
 
 #include <algorithm>
 #include <cmath>
@@ -196,19 +197,15 @@ public:
       center_ += point / static_cast<double> (points_.size ());
     for (const Eigen::Vector3d &point : points_)
       positions_.emplace_back ((point - center_).cast<float> ());
-    search_ = makeKdTreeSearch (positions_);
+    grid_ = PointGrid (positions_, radius, 1);
   }
 
   double
   distance (const Eigen::Vector3d &x, Eigen::Vector3d *gradient) const override
   {
-    std::vector<int> nearest;
-    std::vector<float> squared;
-    if (x.allFinite ())
-      search_->nearestK ((x - center_).cast<float> (), 1, nearest, squared);
-    if (nearest.empty ())
+    if (!x.allFinite ())
       return HUGE_VAL;
-    const Eigen::Vector3f &position = positions_[static_cast<std::size_t> (nearest.front ())];
+    const Eigen::Vector3f &position = positions_[grid_.index ()[grid_.nearest (x - center_)]];
     const double beyond = lengthOf (x - center_ - position.cast<double> (), gradient) - radius_;
     if (gradient != nullptr && !(beyond > 0.0))
       gradient->setZero ();
@@ -237,7 +234,7 @@ private:
   double radius_;
   Eigen::Vector3d center_ = Eigen::Vector3d::Zero ();
   std::vector<Eigen::Vector3f> positions_; // of the points, from the center
-  NeighborSearch::ConstPtr search_;
+  PointGrid grid_;
 };
 
 bool

@@ -168,6 +168,33 @@ PointGrid::hasWithin (const Eigen::Vector3d &x, double radius) const
   return has_one;
 }
 
+std::size_t
+PointGrid::nearest (const Eigen::Vector3d &x) const
+{
+  const Eigen::Vector3f center = x.cast<float> ();
+  std::size_t nearest = 0;
+  float least = HUGE_VALF;
+  const auto look = [&] (std::size_t first, std::size_t last)
+  {
+    for (std::size_t i = first; i < last; ++i)
+    {
+      const Eigen::Vector3f p (coordinates_[0][i], coordinates_[1][i], coordinates_[2][i]);
+      if (const float squared = (p - center).squaredNorm (); squared < least)
+      {
+        least = squared;
+        nearest = i;
+      }
+    }
+  };
+  double looked_within = 0.0;
+  for (double reach = 0.5 * cell_; !(std::sqrt (least) <= looked_within); reach *= 2.0)
+  {
+    visitNear (x, reach, look);
+    looked_within = reach;
+  }
+  return nearest;
+}
+
 void
 PointGrid::withinRadius (const Eigen::Vector3d &x, double radius, std::vector<int> &indices,
                          std::vector<float> &squared_distances) const

@@ -79,6 +79,10 @@ public:
   bool
   hasWithin (const Eigen::Vector3d &x, double radius) const;
 
+  /** \brief The place of the point nearest to \a x; there must be one, and \a x be finite. */
+  std::size_t
+  nearest (const Eigen::Vector3d &x) const;
+
   /** \brief The \a k points nearest to \a x with their squared distances, in no order; fewer where there are fewer. */
   void
   nearestK (const Eigen::Vector3d &x, int k, std::vector<std::pair<float, int>> &found) const;

@@ -89,6 +89,39 @@ protected:
     return points;
   }
 
+  /** \brief Holds the quick field against its definition around some places. */
+  static void
+  expectAgreement (const ImplicitField &field, const std::vector<Vector3d> &middles)
+  {
+    const double spacing = field.spacing ();
+    std::size_t engines = 0;
+    const erkpa::lanes::Engine *const *engine = erkpa::lanes::engines (engines);
+    for (std::size_t e = 0; e < engines; ++e)
+    {
+      BlockField block (field, *engine[e]);
+      LocalField local (field);
+      int compared = 0, settled = 0, keys = 0;
+      for (const Vector3d &middle : middles)
+      {
+        const std::vector<Vector3d> points = evaluateAround (block, middle, spacing);
+        for (std::size_t i = 0; i < points.size (); ++i)
+        {
+          local.gather (points[i], 0.0);
+          const LocalSample sample = local.sample (points[i]);
+          ++compared;
+          if (!block.isSettled (i))
+            continue;
+          ++settled;
+          keys += local.sideKey () == block.sideKey (i) ? 1 : 0;
+          EXPECT_NEAR (sample.value, block.value (i), 1e-4 * spacing) << engine[e]->name;
+          EXPECT_LT ((sample.gradient - block.gradient (i)).norm (), 2e-3) << engine[e]->name;
+        }
+      }
+      EXPECT_GT (settled, compared - compared / 10) << engine[e]->name;
+      EXPECT_GT (keys, settled - settled / 100) << "a node on the very rim of a support may count or not";
+    }
+  }
+
 private:
   static void
   addValue (LocalField &local, const Vector3d &x, const BlockField &block, std::size_t i, Difference &worst)
@@ -300,51 +333,50 @@ TEST_F (BlockFieldTest, AgreesWithTheDefinitionWhereFacesMeet)
   }
 }
 
+/** \brief Places on a box at which sharp surfaces along its edges meet in all ways. */
+std::vector<Vector3d>
+placesOnBox (const Vector3d &half)
+{
+  std::vector<Vector3d> places = shapes::boxEdgePoints (half, 5);
+  for (int i = 0; i < 8; ++i)
+    places.emplace_back (i & 1 ? half[0] : -half[0], i & 2 ? half[1] : -half[1], i & 4 ? half[2] : -half[2]);
+  for (int i = 0; i < 12; ++i)
+    places.emplace_back (half[0], 0.2 * std::sin (0.5 * i), 0.2 * std::cos (0.5 * i));
+  return places;
+}
+
 /** \brief Across sharp surfaces the field has kinks and their squares, which fade where few nodes lie beyond. */
 TEST_F (BlockFieldTest, AgreesWithTheDefinitionWhereSharpSurfacesPass)
 {
   const Vector3d half (0.5, 0.35, 0.25);
   for (const Order order : {Order::LINEAR, Order::SPHERICAL})
-  {
-    FieldOptions options = optionsOf (order, 20);
-    for (const Eigen::Vector4d &plane : shapes::boxBisectors (half))
-      options.sharp_surfaces.push_back (shapes::plane (plane));
-    erkpa::SharpSurface::ConstPtr ball; // curved: its kink looks one way only
-    ASSERT_TRUE (erkpa::makeSharpSurface (erkpa::SurfaceModel::SPHERE, {0.5f, 0.0f, 0.0f, 0.2f}, ball).ok ());
-    options.sharp_surfaces.push_back (ball);
-    const auto field = shapes::field (shapes::box (6000, half), options);
-    const double spacing = field->spacing ();
-    std::vector<Vector3d> middles = shapes::boxEdgePoints (half, 5);
-    for (int i = 0; i < 8; ++i)
-      middles.emplace_back (i & 1 ? 0.5 : -0.5, i & 2 ? 0.35 : -0.35, i & 4 ? 0.25 : -0.25);
-    for (int i = 0; i < 12; ++i)
-      middles.emplace_back (0.5, 0.2 * std::sin (0.5 * i), 0.2 * std::cos (0.5 * i));
-    std::size_t engines = 0;
-    const erkpa::lanes::Engine *const *engine = erkpa::lanes::engines (engines);
-    for (std::size_t e = 0; e < engines; ++e)
+    for (const bool by_radius : {false, true})
     {
-      BlockField block (*field, *engine[e]);
-      LocalField local (*field);
-      int compared = 0, settled = 0, keys = 0;
-      for (const Vector3d &middle : middles)
-      {
-        const std::vector<Vector3d> points = evaluateAround (block, middle, spacing);
-        for (std::size_t i = 0; i < points.size (); ++i)
-        {
-          local.gather (points[i], 0.0);
-          const LocalSample sample = local.sample (points[i]);
-          ++compared;
-          if (!block.isSettled (i))
-            continue;
-          ++settled;
-          keys += local.sideKey () == block.sideKey (i) ? 1 : 0;
-          EXPECT_NEAR (sample.value, block.value (i), 1e-4 * spacing) << engine[e]->name;
-          EXPECT_LT ((sample.gradient - block.gradient (i)).norm (), 2e-3) << engine[e]->name;
-        }
-      }
-      EXPECT_GT (settled, compared - compared / 10) << engine[e]->name;
-      EXPECT_GT (keys, settled - settled / 100) << "a node on the very rim of a support may count or not";
+      FieldOptions options = optionsOf (order, 20);
+      for (const Eigen::Vector4d &plane : shapes::boxBisectors (half))
+        options.sharp_surfaces.push_back (shapes::plane (plane));
+      erkpa::SharpSurface::ConstPtr ball; // curved: its kink looks one way only
+      ASSERT_TRUE (erkpa::makeSharpSurface (erkpa::SurfaceModel::SPHERE, {0.5f, 0.0f, 0.0f, 0.2f}, ball).ok ());
+      options.sharp_surfaces.push_back (ball);
+      options.radius = by_radius ? 0.08 : 0.0; // with some 20 nodes in it, too
+      expectAgreement (*shapes::field (shapes::box (6000, half), options), placesOnBox (half));
     }
+}
+
+/** \brief Limited ones fade around the ends of their extents, and so do the corners that they make with others. */
+TEST_F (BlockFieldTest, AgreesWithTheDefinitionWhereLimitedSharpSurfacesFade)
+{
+  const Vector3d half (0.5, 0.35, 0.25);
+  for (const double fade : {0.0, 0.1})
+  {
+    FieldOptions options = optionsOf (Order::SPHERICAL, 20);
+    for (const Eigen::Vector4d &plane : shapes::boxBisectors (half))
+    {
+      erkpa::Extent::ConstPtr extent;
+      ASSERT_TRUE (erkpa::makeBoxExtent ({-0.45, -0.4, -0.2}, {0.3, 0.2, 0.3}, extent).ok ());
+      options.sharp_surfaces.push_back (erkpa::makeLimited (shapes::plane (plane), extent, fade));
+    }
+    expectAgreement (*shapes::field (shapes::box (6000, half), options), placesOnBox (half));
   }
 }
 

@@ -96,12 +96,17 @@ public:
       gradient[a] = xsimd::fma (growth_[a], by_radius, c_[1 + a] - by_u[a]);
       for (int j = SIZE; j < size (); ++j)
         gradient[a] = xsimd::fma (c_[j], kinks_.slopeAtPoint (j - SIZE, a), gradient[a]);
+      B of_below[KinksT::MAX_COUNT], of_above[KinksT::MAX_COUNT];
       const B of_all = all.along (a, growth_);
       for (int s = 0; s < kinks_.surfaces (); ++s)
       {
-        const B of_fade = kinks_.fadeGradient (s, of_all, below[s].along (a, growth_), above[s].along (a, growth_),
-                                               radius_gradient[a]);
-        const B part = a_[squareOf (s)] * c_[squareOf (s)];
+        of_below[s] = below[s].along (a, growth_);
+        of_above[s] = above[s].along (a, growth_);
+      }
+      for (int e = kinks_.firstFading (); e < kinks_.terms (); ++e)
+      {
+        const B of_fade = kinks_.fadeGradient (e, a, of_all, of_below, of_above, radius_gradient[a]);
+        const B part = a_[SIZE + e] * c_[SIZE + e];
         gradient[a] =
             xsimd::select (part > B (0.0f) || part < B (0.0f), fnma (part, of_fade, gradient[a]), gradient[a]);
       }
@@ -256,8 +261,8 @@ private:
     for (int j = 0; j < size (); ++j)
     {
       raisePivot (j);
-      if (j >= squareOf (0))
-        M_[at (j, j)] += kinks_.fadeOf (j - squareOf (0));
+      if (j >= SIZE + kinks_.firstFading ())
+        M_[at (j, j)] += kinks_.fadeOf (j - SIZE);
       const B inverse = B (1.0f) / M_[at (j, j)];
       for (int k = j + 1; k < size (); ++k)
       {

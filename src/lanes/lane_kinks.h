@@ -13,8 +13,8 @@ constexpr int ANY_COUNT = -1;
  * min (a⁺, b⁺), and after all of these each surface's θ².
  *
  * See Enrichment: a kink is seen from the side on which it is zero at x, where it may be; it counts where the support
- * holds nodes on either side of its surface; its square fades where few lie on one of them. A term's value at a node
- * and its slope are in coordinates u = (y - x) / ε, as θ / ε.
+ * holds nodes on either side of its surface; its square fades where few lie on one of them, and all terms of a limited
+ * surface fade with it. A term's value at a node and its slope are in coordinates u = (y - x) / ε, as θ / ε.
  * \tparam COUNT so many surfaces, without corners: loops over them can be unrolled; or ANY_COUNT
  */
 template <typename B, int COUNT>
@@ -28,15 +28,16 @@ public:
   /** \param[in] first place of the evaluation point in the first lane
    * \param[in] scale 1 / ε
    */
-  LaneKinks (const LaneSurfaces<B> &near, std::size_t first, B scale) : near_ (near), scale_ (scale)
+  LaneKinks (const LaneSurfaces<B> &near, std::size_t first, B scale) : near_ (near), first_ (first), scale_ (scale)
   {
     for (int s = 0; s < surfaces (); ++s)
     {
       below_[s] = above_[s] = B (0.0f);
-      seeFrom (first, s);
+      extents_[s] = near_.surfaces[s]->distance_at == nullptr ? B (1.0f) : extentOf (s).presence;
+      seeFrom (s);
     }
     for (int k = 0; k < corners (); ++k)
-      seeCornerFrom (first, k);
+      seeCornerFrom (k);
   }
 
   /** \brief Number of sharp surfaces. */
@@ -117,9 +118,9 @@ public:
     weight_ = total_weight;
     for (int s = 0; s < surfaces (); ++s)
     {
-      active_[s] = xsimd::select (below_[s] > zero && above_[s] > zero, one, zero);
+      active_[s] = xsimd::select (below_[s] > zero && above_[s] > zero && extents_[s] > B (MIN_PRESENCE), one, zero);
       const B share = xsimd::min (balance (s) * B (1.0f / LEAST_BALANCE), one);
-      presence_[s] = share * share * (B (3.0f) - B (2.0f) * share);
+      balanced_[s] = share * share * (B (3.0f) - B (2.0f) * share);
     }
   }
 
@@ -139,11 +140,19 @@ public:
     if (term < squareOf (0))
     {
       const Corner &corner = near_.corners[term - surfaces ()];
-      return active_[corner.a] * active_[corner.b] * active_[corner.c];
+      const B all = active_[corner.a] * active_[corner.b] * active_[corner.c];
+      return xsimd::select (presence (term) > B (MIN_PRESENCE), all, B (0.0f));
     }
     const int s = term - squareOf (0);
     const B zero (0.0f);
-    return near_.surfaces[s]->squared ? xsimd::select (presence_[s] > B (MIN_PRESENCE), active_[s], zero) : zero;
+    return near_.surfaces[s]->squared ? xsimd::select (presence (term) > B (MIN_PRESENCE), active_[s], zero) : zero;
+  }
+
+  /** \brief The first term that may fade; those after it may, too. */
+  int
+  firstFading () const
+  {
+    return near_.is_limited ? 0 : squareOf (0);
   }
 
   /** \brief A term's value at x. */
@@ -160,34 +169,40 @@ public:
     return slope_at_x_[term][axis];
   }
 
-  /** \brief How much the pivot of a surface's square is raised since it fades: see FieldFit::setFades (). */
+  /** \brief How much the pivot of a term is raised since it fades: see FieldFit::setFades (). */
   B
-  fadeOf (int s) const
+  fadeOf (int term) const
   {
-    const B p = leastPresence (s), left = B (1.0f) - p;
+    const B p = leastPresence (term), left = B (1.0f) - p;
     return B (FADE) * weight_ * left * left / (p * p);
   }
 
   /** \brief ε∇ of it, and of the scale of the term: FieldFit::gradientOfFade ().
-   * \param[in] of_all,of_below,of_above ε∇ of the weights of all nodes and of those on either side, along an axis
-   * \param[in] radius_gradient ∇ε along it
+   * \param[in] axis along which
+   * \param[in] of_all,of_below,of_above ε∇ of the weights of all nodes and, per surface, of those on either side
+   * \param[in] radius_gradient ∇ε
    */
   B
-  fadeGradient (int s, B of_all, B of_below, B of_above, B radius_gradient) const
+  fadeGradient (int term, int axis, B of_all, const B *of_below, const B *of_above, B radius_gradient) const
   {
-    const B p = leastPresence (s), left = B (1.0f) - p, fade = fadeOf (s);
-    const B of_side = xsimd::select (below_[s] < above_[s], of_below, of_above);
-    const B share = balance (s) * B (1.0f / LEAST_BALANCE);
-    const B rise = xsimd::select (share < B (1.0f), B (6.0f / LEAST_BALANCE) * share * (B (1.0f) - share), B (0.0f));
-    const B by_balance = B (-2.0f * FADE) * left / (p * p * p) * rise;
-    return fade / weight_ * of_all + by_balance * fnma (balance (s), of_all, of_side) +
-           B (4.0f) * fade * radius_gradient;
+    const bool is_square = term >= squareOf (0);
+    const B p = leastPresence (term), left = B (1.0f) - p, fade = fadeOf (term);
+    const B change = is_square ? ofSquare (term - squareOf (0), axis, of_all, of_below, of_above, radius_gradient)
+                               : weight_ * extentChange (term, axis, radius_gradient);
+    return fade / weight_ * of_all - B (2.0f * FADE) * left / (p * p * p) * change +
+           B (is_square ? 4.0f : 2.0f) * fade * radius_gradient;
   }
 
 private:
   static constexpr float LEAST_BALANCE = 0.2f, FADE = 0.1f, MIN_PRESENCE = 1e-6f; // see Enrichment and FieldFit
 
   using Mask = decltype (B () < B ());
+
+  /** \brief How much of a limited surface is in force, by t: LimitedSurface::presence (). */
+  struct ExtentPresence
+  {
+    B presence, slope, t;
+  };
 
   using Corner = typename LaneSurfaces<B>::Corner;
 
@@ -197,11 +212,59 @@ private:
     return COUNT == ANY_COUNT ? near_.corner_count : 0;
   }
 
-  void
-  seeFrom (std::size_t first, int s)
+  ExtentPresence
+  extentOf (int s) const
   {
     const Surface &surface = *near_.surfaces[s];
-    const B theta = B::load_unaligned (surface.theta_at + first), one (1.0f), zero (0.0f);
+    const B distance = B::load_unaligned (surface.distance_at + first_), one (1.0f);
+    const B along = surface.fade > 0.0f ? distance / B (surface.fade) : B (2.0f) * distance * scale_ - one;
+    const B t = xsimd::min (xsimd::max (along, B (0.0f)), one);
+    return {one - t * t * (B (3.0f) - B (2.0f) * t), B (-6.0f) * t * (one - t), t};
+  }
+
+  /** \brief ε∇ of what a surface's extent leaves of it. */
+  B
+  changeOfExtent (int s, int axis, B radius_gradient) const
+  {
+    const Surface &surface = *near_.surfaces[s];
+    if (surface.distance_at == nullptr)
+      return B (0.0f);
+    const ExtentPresence extent = extentOf (s);
+    const B away = B::load_unaligned (surface.away_at[axis] + first_), one (1.0f);
+    // The automatic fade goes by 2 d / ε - 1.
+    return extent.slope * (surface.fade > 0.0f ? away / (B (surface.fade) * scale_)
+                                               : B (2.0f) * away - (extent.t + one) * radius_gradient);
+  }
+
+  /** \brief ε∇ of what the extents of its surfaces leave of a kink or a corner. */
+  B
+  extentChange (int term, int axis, B radius_gradient) const
+  {
+    if (term < surfaces ())
+      return changeOfExtent (term, axis, radius_gradient);
+    const Corner &corner = near_.corners[term - surfaces ()];
+    const auto change = [&] (int s) { return changeOfExtent (s, axis, radius_gradient); };
+    return change (corner.a) * extents_[corner.b] * extents_[corner.c] +
+           extents_[corner.a] * (change (corner.b) * extents_[corner.c] + extents_[corner.b] * change (corner.c));
+  }
+
+  /** \brief W ε∇ of the presence of a surface's square: of its extent and of the balance. */
+  B
+  ofSquare (int s, int axis, B of_all, const B *of_below, const B *of_above, B radius_gradient) const
+  {
+    const B of_side = xsimd::select (below_[s] < above_[s], of_below[s], of_above[s]);
+    const B share = balance (s) * B (1.0f / LEAST_BALANCE);
+    const B rise = xsimd::select (share < B (1.0f), B (6.0f / LEAST_BALANCE) * share * (B (1.0f) - share), B (0.0f));
+    const B of_balance = extents_[s] * rise * fnma (balance (s), of_all, of_side);
+    return near_.is_limited ? xsimd::fma (weight_ * balanced_[s], changeOfExtent (s, axis, radius_gradient), of_balance)
+                            : of_balance;
+  }
+
+  void
+  seeFrom (int s)
+  {
+    const Surface &surface = *near_.surfaces[s];
+    const B theta = B::load_unaligned (surface.theta_at + first_), one (1.0f), zero (0.0f);
     const auto holds_x = theta >= zero;
     sign_[s] = surface.reversible ? xsimd::select (holds_x, -one, one) : one;
     open_[s] = surface.reversible ? xsimd::select (holds_x, one, zero) : zero;
@@ -210,20 +273,21 @@ private:
     at_x_[squareOf (s)] = theta * theta * scale_ * scale_;
     for (int a = 0; a < 3; ++a)
     {
-      const B g = B::load_unaligned (surface.gradient_at[a] + first);
+      const B g = B::load_unaligned (surface.gradient_at[a] + first_);
       slope_at_x_[s][a] = on * sign_[s] * g;
       slope_at_x_[squareOf (s)][a] = B (2.0f) * theta * scale_ * g;
     }
   }
 
   void
-  seeCornerFrom (std::size_t first, int k)
+  seeCornerFrom (int k)
   {
     const Corner &corner = near_.corners[k];
     const Surface &a = *near_.surfaces[corner.a], &b = *near_.surfaces[corner.b];
-    const B zero (0.0f), one (1.0f), height_a = B (corner.scale_a) * B::load_unaligned (a.theta_at + first),
-                                     height_b = B (corner.scale_b) * B::load_unaligned (b.theta_at + first);
-    const auto holds_x = height_a >= zero && height_b >= zero;
+    const B zero (0.0f), one (1.0f), height_a = B (corner.scale_a) * B::load_unaligned (a.theta_at + first_),
+                                     height_b = B (corner.scale_b) * B::load_unaligned (b.theta_at + first_);
+    // One that fades is always seen from the same side: see Enrichment::addTerm ().
+    const auto holds_x = height_a >= zero && height_b >= zero && presence (surfaces () + k) >= one;
     const B sign = a.reversible && b.reversible ? xsimd::select (holds_x, -one, one) : one;
     is_behind_[k] = sign < zero;
     const auto is_b = sign * height_b < sign * height_a;
@@ -233,8 +297,8 @@ private:
     at_x_[surfaces () + k] = xsimd::select (is_on, height, zero);
     for (int i = 0; i < 3; ++i)
     {
-      const B slope = xsimd::select (is_b, B::load_unaligned (b.gradient_at[i] + first),
-                                     B::load_unaligned (a.gradient_at[i] + first));
+      const B slope = xsimd::select (is_b, B::load_unaligned (b.gradient_at[i] + first_),
+                                     B::load_unaligned (a.gradient_at[i] + first_));
       slope_at_x_[surfaces () + k][i] = xsimd::select (is_on, scale * slope, zero);
     }
   }
@@ -284,17 +348,31 @@ private:
     return xsimd::min (below_[s], above_[s]) / weight_;
   }
 
+  /** \brief How much of a term is in force. */
   B
-  leastPresence (int s) const
+  presence (int term) const
   {
-    return xsimd::max (presence_[s], B (MIN_PRESENCE));
+    if (term >= squareOf (0))
+      return extents_[term - squareOf (0)] * balanced_[term - squareOf (0)];
+    if (term < surfaces ())
+      return extents_[term];
+    const Corner &corner = near_.corners[term - surfaces ()];
+    return extents_[corner.a] * extents_[corner.b] * extents_[corner.c];
+  }
+
+  B
+  leastPresence (int term) const
+  {
+    return xsimd::max (presence (term), B (MIN_PRESENCE));
   }
 
   const LaneSurfaces<B> &near_;
+  std::size_t first_; // place of the evaluation point in the first lane
   B scale_;
   B sign_[MAX_COUNT], open_[MAX_COUNT]; // of θ; 1 where the kink is zero on the surface itself
-  B below_[MAX_COUNT], above_[MAX_COUNT], presence_[MAX_COUNT], active_[MAX_COUNT];
-  Mask is_behind_[MAX_CORNERS + 1]; // where a corner is seen from
+  B below_[MAX_COUNT], above_[MAX_COUNT], active_[MAX_COUNT];
+  B extents_[MAX_COUNT], balanced_[MAX_COUNT]; // what a surface's extent leaves of it, and the balance of its square
+  Mask is_behind_[MAX_CORNERS + 1];            // where a corner is seen from
   B at_x_[MAX_TERMS], slope_at_x_[MAX_TERMS][3];
   B weight_;
 };

@@ -22,6 +22,7 @@ struct LaneSurfaces
   };
 
   int count = 0, corner_count = 0;
+  bool is_limited = false; ///< whether any of them is
   const Surface *surfaces[MAX_SURFACES];
   int numbers[MAX_SURFACES]; ///< places among those that were given
   Corner corners[MAX_CORNERS];
@@ -39,6 +40,7 @@ struct LaneSurfaces
         continue;
       surfaces[count] = &sharp.surfaces[s];
       numbers[count++] = static_cast<int> (s);
+      is_limited = is_limited || sharp.surfaces[s].distance_at != nullptr;
     }
     for (std::size_t p = 0; p < sharp.pencil_count; ++p)
     {
@@ -50,10 +52,16 @@ struct LaneSurfaces
   }
 
 private:
-  /** \brief θ of a reversible surface, a plane, is a distance. */
+  /** \brief θ of a reversible surface, a plane, is a distance. One that is limited is gone at a distance. */
   static bool
   passesSupport (const Surface &surface, std::size_t first, B radius)
   {
+    if (surface.distance_at != nullptr)
+    {
+      const B gone = surface.fade > 0.0f ? B (surface.fade) : radius;
+      if (!xsimd::any (B::load_unaligned (surface.distance_at + first) < gone))
+        return false;
+    }
     const B theta = B::load_unaligned (surface.theta_at + first);
     return !surface.reversible || xsimd::any (xsimd::abs (theta) <= B (1.00001f) * radius);
   }

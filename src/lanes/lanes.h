@@ -93,6 +93,8 @@ struct Surface
   const float *theta_at, *gradient_at[3]; ///< at the evaluation points
   bool reversible;                        ///< its kink may be seen from either side
   bool squared;                           ///< its kink comes with θ²
+  const float *distance_at, *away_at[3];  ///< of a limited one: from its extent, and ∇ of it; null otherwise
+  float fade;                             ///< of a limited one: SharpSurfaceParts::fade
 };
 
 /** \brief Three surfaces that meet in a corner: see erkpa::Pencil. */
