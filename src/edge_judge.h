@@ -29,6 +29,17 @@ struct TriangleShape
     shortest = std::min (ab, std::min (bc, ca));
     sine = shortest > 0.0 ? std::sqrt (area.squaredNorm () / (middle * longest)) : 0.0;
   }
+
+  /** \brief Whether the sine of the smallest angle is below a bound: without a root, for it is asked of all triangles.
+   */
+  static bool
+  isNarrow (const Eigen::Vector3d &a, const Eigen::Vector3d &b, const Eigen::Vector3d &c, double least_sine)
+  {
+    const double ab = (b - a).squaredNorm (), bc = (c - b).squaredNorm (), ca = (a - c).squaredNorm ();
+    const double longest = std::max (ab, std::max (bc, ca)),
+                 middle = std::max (std::min (ab, bc), std::min (std::max (ab, bc), ca));
+    return (b - a).cross (c - a).squaredNorm () < least_sine * least_sine * middle * longest;
+  }
 };
 
 /** \brief Judges what the collapse or the flip of an edge would do to the surface and its creases.
@@ -53,6 +64,12 @@ public:
   shapeOf (int h) const
   {
     return {at (edges_.start (h)), at (edges_.end (h)), at (apex (h))};
+  }
+
+  bool
+  isNarrow (int h, double least_sine) const
+  {
+    return TriangleShape::isNarrow (at (edges_.start (h)), at (edges_.end (h)), at (apex (h)), least_sine);
   }
 
   /** \brief The sine of the smallest angle around the start of a half-edge once it is collapsed.

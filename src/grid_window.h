@@ -21,19 +21,12 @@ public:
   void
   moveTo (const GridPoint &cell)
   {
-    const GridPoint first{cell.x & ~3, cell.y & ~3, cell.z & ~3};
-    if (first.x == first_.x && first.y == first_.y && first.z == first_.z)
+    const GridPoint first = SparseGrid::blockOf (cell);
+    if (first == first_)
       return;
     first_ = first;
     blocks_.fill (UNKNOWN);
     blocks_[MIDDLE] = grid_.find (cell).block;
-  }
-
-  /** \brief Look everything up anew: the grid has grown. */
-  void
-  forget ()
-  {
-    first_ = {1, 0, 0};
   }
 
   /** \brief Whether the block in the middle is one of the grid's. */

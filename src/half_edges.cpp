@@ -13,8 +13,8 @@ namespace erkpa
 using Triangle = std::array<int, 3>;
 
 HalfEdges::HalfEdges (std::vector<Triangle> &&triangles, std::size_t vertex_count, int threads)
-    : triangles_ (std::move (triangles)), twins_ (3 * triangles_.size (), -1), outgoing_ (vertex_count, -1),
-      places_ (vertex_count, Place::INSIDE)
+    : triangles_ (std::move (triangles)), corners_ (triangles_.empty () ? nullptr : triangles_.front ().data ()),
+      twins_ (3 * triangles_.size (), -1), outgoing_ (vertex_count, -1), places_ (vertex_count, Place::INSIDE)
 {
   findTwins (threads);
   findOutgoing (threads);
@@ -112,8 +112,8 @@ HalfEdges::canCollapse (int h) const
   visitNeighbors (to, [&] (int v) { neighbors[count < MOST ? count++ : 0] = v; });
   if (count == MOST)
     return false;
-  int around_to = 0, around_from = 0, common = 0;
-  around (to, [&] (int) { ++around_to; });
+  const std::size_t around_to = count - (place (to) == Place::INSIDE ? 1 : 2); // triangles
+  int around_from = 0, common = 0;
   const auto last = neighbors.begin () + static_cast<std::ptrdiff_t> (count);
   around (from,
           [&] (int side)

@@ -40,7 +40,7 @@ public:
   int
   start (int h) const
   {
-    return triangles_[static_cast<std::size_t> (h) / 3][static_cast<std::size_t> (h) % 3];
+    return corners_[h];
   }
 
   int
@@ -137,7 +137,7 @@ private:
   void
   setStart (int h, int v)
   {
-    triangles_[static_cast<std::size_t> (h) / 3][static_cast<std::size_t> (h) % 3] = v;
+    corners_[h] = v;
   }
 
   int
@@ -162,6 +162,7 @@ private:
   findOutgoing (int threads);
 
   std::vector<std::array<int, 3>> triangles_; // vertices -1 where a triangle has vanished
+  int *corners_;                              // of the triangles, one after the other
   std::vector<int> twins_;
   std::vector<char> creases_; // per half-edge; empty where there are none
   std::vector<int> outgoing_; // per vertex a half-edge that starts there: on the border the first one; -1 if none does

@@ -5,9 +5,13 @@
 
 #include <Eigen/Core>
 
+#include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <numeric>
+#include <utility>
 #include <vector>
 
 namespace erkpa
@@ -24,26 +28,36 @@ class MeshRegions
 {
 public:
   /** \param[in] side length of a region */
-  MeshRegions (double side, const std::vector<Eigen::Vector3d> &positions, int threads)
-      : scale_ (1.0 / side), positions_ (positions), threads_ (threads)
+  MeshRegions (double side, const std::vector<Eigen::Vector3d> &positions, int threads) : threads_ (threads)
   {
+    for (std::size_t layout = 0; layout < LAYOUTS; ++layout)
+      regions_[layout].resize (positions.size ());
+    parallelRanges (positions.size (), threads,
+                    [&] (std::size_t first, std::size_t last)
+                    {
+                      for (std::size_t layout = 0; layout < LAYOUTS; ++layout)
+                        for (std::size_t v = first; v < last; ++v)
+                          regions_[layout][v] = regionAt (positions[v] / side, static_cast<double> (layout) / LAYOUTS);
+                    });
   }
 
   /** \brief Run jobs 0 .. count - 1.
-   * \param[in] first first (job) is a vertex of the job; -1 where there is no need of it any more
+   * \param[in] first_vertex first_vertex (job) is a vertex of the job; -1 where there is no need of it any more
    * \param[in] reach reach (job, visit) visits the vertices of a job and their neighbours; none where there is no need
    * of it any more
+   * \param[in] before before (a, b) tells which of two jobs runs first, where one has to
    * \param[in] make_worker,work,finish as in parallelFor
    */
-  template <typename FirstT, typename ReachT, typename MakeWorkerT, typename WorkT, typename FinishT>
+  template <typename FirstT, typename ReachT, typename BeforeT, typename MakeWorkerT, typename WorkT, typename FinishT>
   void
-  run (std::size_t count, FirstT first_vertex, ReachT reach, MakeWorkerT make_worker, WorkT work, FinishT finish)
+  run (std::size_t count, FirstT first_vertex, ReachT reach, BeforeT before, MakeWorkerT make_worker, WorkT work,
+       FinishT finish) const
   {
     std::vector<std::uint32_t> jobs (count);
-    for (std::size_t i = 0; i < count; ++i)
-      jobs[i] = static_cast<std::uint32_t> (i);
-    for (const double shift : {0.0, 0.5})
-      runInside (shift, first_vertex, reach, make_worker, work, finish, jobs);
+    std::iota (jobs.begin (), jobs.end (), 0u);
+    for (const Regions &regions : regions_)
+      runInside (regions, first_vertex, reach, before, make_worker, work, finish, jobs);
+    std::sort (jobs.begin (), jobs.end (), before);
     auto worker = make_worker ();
     for (const std::uint32_t job : jobs)
       if (isNeeded (job, reach))
@@ -52,16 +66,20 @@ public:
   }
 
 private:
-  static constexpr std::uint32_t NOWHERE = 0xffffffffu;
+  using Regions = std::vector<std::uint16_t>; // per vertex
 
-  /** \brief A number for the region of a vertex. Two may have the same: they are one region then. */
-  std::uint32_t
-  regionOf (int v, double shift) const
+  static constexpr std::size_t LAYOUTS = 2;
+  static constexpr int BITS = 5; // of a region's number, along each axis
+  static constexpr std::size_t COUNT = std::size_t (1) << 3 * BITS;
+
+  /** \brief A number for the region of a place. They repeat far away: those of one number are one region. */
+  static std::uint16_t
+  regionAt (const Eigen::Vector3d &place, double shift)
   {
-    const Eigen::Vector3d &p = positions_[static_cast<std::size_t> (v)];
-    const auto along = [&] (int axis)
-    { return static_cast<std::uint32_t> (static_cast<int> (std::floor (p[axis] * scale_ + shift))); };
-    return (along (0) * 73856093u ^ along (1) * 19349663u ^ along (2) * 83492791u) & 0x7fffffffu;
+    int region = 0;
+    for (int axis = 0; axis < 3; ++axis)
+      region = region << BITS | (static_cast<int> (std::floor (place[axis] + shift)) & ((1 << BITS) - 1));
+    return static_cast<std::uint16_t> (region);
   }
 
   template <typename ReachT>
@@ -73,57 +91,76 @@ private:
     return any;
   }
 
-  /** \brief Run the jobs inside of regions; those on borders are left. */
-  template <typename FirstT, typename ReachT, typename MakeWorkerT, typename WorkT, typename FinishT>
-  void
-  runInside (double shift, FirstT &first_vertex, ReachT &reach, MakeWorkerT &make_worker, WorkT &work, FinishT &finish,
-             std::vector<std::uint32_t> &jobs) const
+  /** \brief Sort the jobs that are needed by the region of their first vertex.
+   * \return where the jobs of each region begin, and one more
+   */
+  template <typename FirstT>
+  std::vector<std::uint32_t>
+  sortByRegion (const Regions &regions, FirstT &first_vertex, std::vector<std::uint32_t> &jobs) const
   {
-    std::vector<std::uint64_t> places (jobs.size ()); // region and job
+    constexpr std::uint16_t NOWHERE = COUNT; // behind all others
+    std::vector<std::uint16_t> places (jobs.size ());
     parallelRanges (jobs.size (), threads_,
                     [&] (std::size_t first, std::size_t last)
                     {
                       for (std::size_t i = first; i < last; ++i)
                       {
                         const int v = first_vertex (jobs[i]);
-                        places[i] = std::uint64_t (v < 0 ? NOWHERE : regionOf (v, shift)) << 32 | jobs[i];
+                        places[i] = v < 0 ? NOWHERE : regions[static_cast<std::size_t> (v)];
                       }
                     });
-    std::sort (places.begin (), places.end ());
-    std::vector<std::size_t> firsts; // of each region
-    for (std::size_t i = 0; i < places.size () && places[i] >> 32 != NOWHERE; ++i)
-      if (i == 0 || places[i] >> 32 != places[i - 1] >> 32)
-        firsts.push_back (i);
-    std::vector<std::vector<std::uint32_t>> left (firsts.size ());
+    std::vector<std::uint32_t> starts (COUNT + 2, 0), sorted (jobs.size ());
+    for (const std::uint16_t place : places)
+      ++starts[place + std::size_t (1)];
+    std::partial_sum (starts.begin (), starts.end (), starts.begin ());
+    std::vector<std::uint32_t> ends (starts);
+    for (std::size_t i = 0; i < jobs.size (); ++i)
+      sorted[ends[places[i]]++] = jobs[i];
+    jobs.swap (sorted);
+    starts.pop_back ();
+    return starts;
+  }
+
+  /** \brief Run the jobs inside of regions; those on borders are left. */
+  template <typename FirstT, typename ReachT, typename BeforeT, typename MakeWorkerT, typename WorkT, typename FinishT>
+  void
+  runInside (const Regions &regions, FirstT &first_vertex, ReachT &reach, BeforeT &before, MakeWorkerT &make_worker,
+             WorkT &work, FinishT &finish, std::vector<std::uint32_t> &jobs) const
+  {
+    const std::vector<std::uint32_t> starts = sortByRegion (regions, first_vertex, jobs);
+    std::vector<std::size_t> used; // regions
+    for (std::size_t region = 0; region < COUNT; ++region)
+      if (starts[region] < starts[region + 1])
+        used.push_back (region);
+    std::vector<std::vector<std::uint32_t>> left (used.size ());
     parallelFor (
-        firsts.size (), threads_, make_worker,
+        used.size (), threads_, make_worker,
         [&] (auto &worker, std::size_t r)
         {
-          const std::uint64_t region = places[firsts[r]] >> 32;
-          for (std::size_t i = firsts[r]; i < places.size () && places[i] >> 32 == region; ++i)
+          const std::size_t region = used[r];
+          const auto first = jobs.begin () + starts[region], last = jobs.begin () + starts[region + 1];
+          std::sort (first, last, before);
+          for (auto job = first; job != last; ++job)
           {
-            const auto job = static_cast<std::uint32_t> (places[i]);
             bool any = false, inside = true;
-            reach (job,
+            reach (*job,
                    [&] (int v)
                    {
                      any = true;
-                     inside = inside && regionOf (v, shift) == region;
+                     inside = inside && regions[static_cast<std::size_t> (v)] == region;
                    });
             if (any && inside)
-              work (worker, job);
+              work (worker, *job);
             else if (any)
-              left[r].push_back (job);
+              left[r].push_back (*job);
           }
         },
         finish);
     jobs = joinParts (std::move (left), threads_);
-    std::sort (jobs.begin (), jobs.end ());
   }
 
-  double scale_;
-  const std::vector<Eigen::Vector3d> &positions_;
   int threads_;
+  std::array<Regions, LAYOUTS> regions_; // the second half a region off the first
 };
 
 } // namespace erkpa

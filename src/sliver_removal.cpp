@@ -6,6 +6,8 @@
 #include "parallel_collect.h"
 
 #include <algorithm>
+#include <cstdint>
+#include <functional>
 #include <utility>
 
 namespace erkpa
@@ -110,9 +112,9 @@ private:
   /** \brief Run work (worker, half-edge) for each of many in which the triangles at \a sides sides from it on may
    * change. \param[in] at at (job) is the half-edge \return whether any changed the mesh
    */
-  template <typename AtT, typename NeedT, typename WorkT>
+  template <typename AtT, typename NeedT, typename BeforeT, typename WorkT>
   bool
-  runAll (std::size_t count, int sides, AtT at, NeedT is_needed, WorkT work)
+  runAll (std::size_t count, int sides, AtT at, NeedT is_needed, BeforeT before, WorkT work)
   {
     bool changed = false;
     regions_.run (
@@ -123,7 +125,7 @@ private:
           if (edges_.isAlive (h) && is_needed (h))
             visitOwn (h, sides, [&] (int v) { edges_.visitNeighbors (v, visit); });
         },
-        [] { return Worker (); }, [&] (Worker &worker, std::size_t job) { work (worker, at (job)); },
+        before, [] { return Worker (); }, [&] (Worker &worker, std::size_t job) { work (worker, at (job)); },
         [&] (Worker &worker)
         {
           queue_.insert (queue_.end (), worker.queue.begin (), worker.queue.end ());
@@ -141,10 +143,10 @@ private:
     {
       std::vector<ShortEdge> queue;
       queue.swap (queue_);
-      std::sort (queue.begin (), queue.end ());
       runAll (
           queue.size (), 1, [&] (std::size_t job) { return queue[job].second; },
           [this] (int h) { return judge_.squaredLength (h) < short_; },
+          [&] (std::uint32_t a, std::uint32_t b) { return queue[a] < queue[b]; },
           [this] (Worker &worker, int h) { collapseBetterWay (h, worker); });
     }
     queue_.clear ();
@@ -165,7 +167,7 @@ private:
   bool
   isNarrow (int h) const
   {
-    return edges_.isAlive (h) && judge_.shapeOf (h).sine < NARROW;
+    return edges_.isAlive (h) && judge_.isNarrow (h, NARROW);
   }
 
   /** \brief Mend the triangles around which anything has changed since the last pass. */
@@ -180,7 +182,7 @@ private:
     };
     return runAll (
         narrow.size (), 3, [&] (std::size_t job) { return narrow[job]; },
-        [&] (int h) { return isNarrow (h) && is_new (h); },
+        [&] (int h) { return isNarrow (h) && is_new (h); }, std::less<std::uint32_t> (),
         [this] (Worker &worker, int h) { worker.changed = mend (h, worker) || worker.changed; });
   }
 

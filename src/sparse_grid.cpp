@@ -3,8 +3,6 @@
 
 #include "grid_bits.h"
 
-#include <cmath>
-
 namespace erkpa
 {
 
@@ -41,8 +39,12 @@ GridPoint
 SparseGrid::cellOf (const Eigen::Vector3d &position) const
 {
   const Eigen::Vector3d p = (position - origin_) / voxel_size_;
-  return {static_cast<int> (std::floor (p[0])), static_cast<int> (std::floor (p[1])),
-          static_cast<int> (std::floor (p[2]))};
+  const auto floored = [] (double v)
+  {
+    const int towards_zero = static_cast<int> (v);
+    return towards_zero - (v < static_cast<double> (towards_zero) ? 1 : 0);
+  };
+  return {floored (p[0]), floored (p[1]), floored (p[2])};
 }
 
 std::uint64_t
@@ -53,12 +55,6 @@ SparseGrid::keyOf (const GridPoint &point)
   return part (point.x) | (part (point.y) << 21) | (part (point.z) << 42);
 }
 
-GridPlace
-SparseGrid::place (const GridPoint &point)
-{
-  return {placeBlock ({point.x & ~3, point.y & ~3, point.z & ~3}), localOf (point)};
-}
-
 int
 SparseGrid::placeBlock (const GridPoint &first)
 {
@@ -66,7 +62,7 @@ SparseGrid::placeBlock (const GridPoint &first)
   if (is_new)
   {
     if (static_cast<std::size_t> (block_count_) == CHUNK * chunks_.size ())
-      chunks_.push_back (std::make_unique<Chunk> ());
+      chunks_.emplace_back (new Chunk); // without zeros for the values
     GridBlock &made = block (block_count_++);
     made.first = first;
     made.above.fill (-1);

@@ -22,6 +22,12 @@ struct GridPoint
   {
     return {x + o.x, y + o.y, z + o.z};
   }
+
+  bool
+  operator== (const GridPoint &o) const
+  {
+    return x == o.x && y == o.y && z == o.z;
+  }
 };
 
 /** \brief Corner 0..7 of a cell: bit 0 is x, bit 1 is y, bit 2 is z. */
@@ -51,7 +57,7 @@ struct GridBlock
   std::uint64_t fresh = 0;            ///< cells that are in this one
   std::uint64_t active = 0;           ///< cells that the surface crosses
   std::array<std::uint64_t, 3> cut{}; ///< per axis: edges from a node that carry a vertex
-  std::array<float, NODES> values{};  ///< f - iso, NaN where f is undefined
+  std::array<float, NODES> values;    ///< of known nodes: f - iso, NaN where f is undefined
 
   /** \brief Take up the value of a node. */
   void
@@ -104,9 +110,23 @@ public:
   GridPoint
   cellOf (const Eigen::Vector3d &position) const;
 
-  /** \brief The place of a node or cell; its block is made where it does not exist. */
-  GridPlace
-  place (const GridPoint &point);
+  /** \brief The lowest node of the block of a node or cell. */
+  static GridPoint
+  blockOf (const GridPoint &point)
+  {
+    return {point.x & ~3, point.y & ~3, point.z & ~3};
+  }
+
+  /** \brief Its bit there. */
+  static std::uint64_t
+  bitOf (const GridPoint &point)
+  {
+    return std::uint64_t (1) << localOf (point);
+  }
+
+  /** \brief The block with a lowest node, which is made where it does not exist. */
+  int
+  placeBlock (const GridPoint &first);
 
   /** \brief The place of a node or cell; block < 0 where it does not exist. */
   GridPlace
@@ -200,9 +220,6 @@ public:
 private:
   static constexpr std::size_t CHUNK = 128;
   using Chunk = std::array<GridBlock, CHUNK>; // blocks stay where they are when others are made
-
-  int
-  placeBlock (const GridPoint &first);
 
   static std::uint64_t
   keyOf (const GridPoint &point);

@@ -54,7 +54,7 @@ public:
   {
     // Most surfaces are of few pieces, and a few nodes tell of each that it stays.
     const std::size_t nodes = tracker_.nodeCount ();
-    for (std::size_t first = 0, size = 4096; first < nodes && !allStay (); first += size, size *= 4)
+    for (std::size_t first = 0, size = 256; first < nodes && !allStay (); first += size, size *= 4)
       parallelRanges (std::min (size, nodes - first), threads,
                       [&] (std::size_t begin, std::size_t end)
                       {

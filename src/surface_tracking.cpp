@@ -28,6 +28,24 @@ faceOf (int axis, int side)
   return 2 * static_cast<std::size_t> (axis) + static_cast<std::size_t> (side);
 }
 
+std::uint64_t
+anyOf (const std::array<std::uint64_t, 8> &corners)
+{
+  std::uint64_t any = 0;
+  for (const std::uint64_t corner : corners)
+    any |= corner;
+  return any;
+}
+
+std::uint64_t
+everyOf (const std::array<std::uint64_t, 8> &corners)
+{
+  std::uint64_t every = ~std::uint64_t (0);
+  for (const std::uint64_t corner : corners)
+    every &= corner;
+  return every;
+}
+
 } // namespace
 
 SurfaceTracker::SurfaceTracker (const ImplicitField &field, const PolygonizerOptions &options, SparseGrid &grid,
@@ -52,11 +70,15 @@ SurfaceTracker::track ()
 void
 SurfaceTracker::addToFront (const GridPoint &cell)
 {
+  addToFront (SparseGrid::blockOf (cell), SparseGrid::bitOf (cell));
+}
+
+void
+SurfaceTracker::addToFront (const GridPoint &first, std::uint64_t cells)
+{
   const auto inside = [] (int v) { return v > -SparseGrid::LIMIT && v < SparseGrid::LIMIT; };
-  if (!inside (cell.x) || !inside (cell.y) || !inside (cell.z))
-    return;
-  const GridPlace place = grid_.place (cell);
-  addToFront (place.block, place.bit ());
+  if (inside (first.x) && inside (first.y) && inside (first.z))
+    addToFront (grid_.placeBlock (first), cells);
 }
 
 void
@@ -162,12 +184,13 @@ SurfaceTracker::classifyFront ()
   }
 }
 
-/** \brief Marks those fresh cells of a block that the surface crosses. */
+/** \brief Marks those fresh cells of a block that the surface crosses, and those of it to which they hand on if
+ * nothing has to be evaluated for them. */
 SurfaceTracker::PassedFaces
 SurfaceTracker::classify (int index)
 {
-  std::array<std::uint64_t, 8> inside{}, undefined{}, near{};
   GridBlock &block = grid_.block (index);
+  std::array<std::uint64_t, 8> inside{}, undefined{}, near{}, known{};
   for (std::size_t above = 0; above < 8; ++above)
     if (block.above[above] >= 0)
     {
@@ -175,36 +198,53 @@ SurfaceTracker::classify (int index)
       inside[above] = other.inside;
       undefined[above] = other.undefined;
       near[above] = other.near;
+      known[above] = other.known;
     }
-  const auto any_of = [] (const std::array<std::uint64_t, 8> &corners)
-  {
-    std::uint64_t any = 0;
-    for (const std::uint64_t corner : corners)
-      any |= corner;
-    return any;
-  };
   inside = grid_bits::atCorners (inside);
-  std::uint64_t crossed =
-      any_of (inside) & any_of (grid_bits::atCorners (near)) & ~any_of (grid_bits::atCorners (undefined)) & block.fresh;
-  std::uint64_t all = ~std::uint64_t (0);
-  for (const std::uint64_t corner : inside)
-    all &= corner;
-  crossed &= ~all;
-  block.active |= crossed;
+  const std::uint64_t all_known = everyOf (grid_bits::atCorners (known));
+  const std::uint64_t may_cross = anyOf (inside) & ~everyOf (inside) & anyOf (grid_bits::atCorners (near)) &
+                                  ~anyOf (grid_bits::atCorners (undefined));
+  const PassedFaces cut = cutFaces (inside);
   PassedFaces passed{};
+  for (std::uint64_t cells = block.fresh; cells != 0;)
+  {
+    const std::uint64_t crossed = may_cross & cells;
+    block.active |= crossed;
+    std::uint64_t next = 0;
+    for (int axis = 0; axis < 3; ++axis)
+      for (const int side : {0, 1})
+      {
+        const std::uint64_t through = crossed & cut[faceOf (axis, side)];
+        passed[faceOf (axis, side)] |= through;
+        next |= side == 1 ? grid_bits::up (through, axis) : grid_bits::down (through, axis);
+      }
+    cells = next & all_known & ~block.visited;
+    block.visited |= cells;
+    block.fresh |= cells;
+  }
+  return passed;
+}
+
+/** \brief For each face of cells: those with corners of it on either side of the surface.
+ * \param[in] inside corner by corner the cells that have it inside
+ */
+SurfaceTracker::PassedFaces
+SurfaceTracker::cutFaces (const std::array<std::uint64_t, 8> &inside)
+{
+  PassedFaces cut{};
   for (int axis = 0; axis < 3; ++axis)
     for (const int side : {0, 1})
     {
-      std::uint64_t any = 0, every = ~std::uint64_t (0); // of the face's corners
+      std::uint64_t any = 0, every = ~std::uint64_t (0);
       for (int corner = 0; corner < 8; ++corner)
         if ((corner >> axis & 1) == side)
         {
           any |= inside[static_cast<std::size_t> (corner)];
           every &= inside[static_cast<std::size_t> (corner)];
         }
-      passed[faceOf (axis, side)] = crossed & any & ~every;
+      cut[faceOf (axis, side)] = any & ~every;
     }
-  return passed;
+  return cut;
 }
 
 /** \brief The cells beyond a face of some cells go into the next front. */
@@ -221,32 +261,42 @@ SurfaceTracker::handOn (int index, std::uint64_t cells, int axis, bool up)
     addToFront (up ? grid_.placeAbove (index, 1 << axis) : grid_.placeBelow (index, axis), leaving);
 }
 
+GridPoint
+SurfaceTracker::cellOfPlace (std::size_t place) const
+{
+  const PointGrid &nodes = *field_.nodeTable ().grid;
+  if (field_.options ().warp)
+    return grid_.cellOf (field_.surfacePositions ()[nodes.index ()[place]].cast<double> ());
+  return grid_.cellOf ({nodes.coordinates (0)[place], nodes.coordinates (1)[place], nodes.coordinates (2)[place]});
+}
+
 void
 SurfaceTracker::seedFromNodes ()
 {
-  if (field_.options ().warp)
+  struct BlockCells
   {
-    for (const Eigen::Vector3f &position : field_.surfacePositions ())
-      addToFront (grid_.cellOf (position.cast<double> ()));
-    return;
-  }
-  // In the order of the grid neighbours follow each other, and so do their blocks in memory.
-  const PointGrid &nodes = *field_.nodeTable ().grid;
-  GridWindow window (grid_);
-  for (std::size_t i = 0; i < nodes.size (); ++i)
-  {
-    const GridPoint cell =
-        grid_.cellOf ({nodes.coordinates (0)[i], nodes.coordinates (1)[i], nodes.coordinates (2)[i]});
-    window.moveTo (cell);
-    const GridPlace place = window.find (cell);
-    if (place.block >= 0)
-      addToFront (place.block, place.bit ());
-    else
-    {
-      addToFront (cell);
-      window.forget ();
-    }
-  }
+    GridPoint first;
+    std::uint64_t cells;
+  };
+  const auto found = parallelCollect<BlockCells> (
+      nodeCount (), options_.threads,
+      [this] (std::size_t first, std::size_t last, std::vector<BlockCells> &blocks)
+      {
+        for (std::size_t i = first; i < last; ++i)
+        {
+          const GridPoint cell = cellOfPlace (i);
+          const GridPoint block = SparseGrid::blockOf (cell);
+          // A few blocks take turns.
+          constexpr std::size_t RECENT = 8;
+          const auto oldest = blocks.end () - static_cast<std::ptrdiff_t> (std::min (RECENT, blocks.size ()));
+          auto known = std::find_if (oldest, blocks.end (), [&] (const BlockCells &b) { return b.first == block; });
+          if (known == blocks.end ())
+            known = blocks.insert (known, {block, 0});
+          known->cells |= SparseGrid::bitOf (cell);
+        }
+      });
+  for (const BlockCells &block : found)
+    addToFront (block.first, block.cells);
 }
 
 bool
@@ -288,18 +338,17 @@ void
 SurfaceTracker::seedFromProjections ()
 {
   const auto &positions = field_.surfacePositions ();
-  // In the order of the grid, as in seedFromNodes ().
   const std::vector<std::uint32_t> &order = field_.nodeTable ().grid->index ();
-  const std::vector<std::uint32_t> away = parallelCollect<std::uint32_t> (
-      order.size (), options_.threads,
-      [&] (std::size_t first, std::size_t last, std::vector<std::uint32_t> &missing)
-      {
-        GridWindow window (grid_);
-        GridPoint found{};
-        for (std::size_t i = first; i < last; ++i)
-          if (!findCellNear (window, grid_.cellOf (positions[order[i]].cast<double> ()), found))
-            missing.push_back (order[i]);
-      });
+  const std::vector<std::uint32_t> away =
+      parallelCollect<std::uint32_t> (order.size (), options_.threads,
+                                      [&] (std::size_t first, std::size_t last, std::vector<std::uint32_t> &missing)
+                                      {
+                                        GridWindow window (grid_);
+                                        GridPoint found{};
+                                        for (std::size_t i = first; i < last; ++i)
+                                          if (!findCellNear (window, cellOfPlace (i), found))
+                                            missing.push_back (order[i]);
+                                      });
   std::vector<Eigen::Vector3d> feet;
   feet.reserve (away.size ());
   for (const std::uint32_t i : away)

@@ -50,6 +50,10 @@ private:
   void
   addToFront (const GridPoint &cell);
 
+  /** \param[in] first the lowest cell of a block */
+  void
+  addToFront (const GridPoint &first, std::uint64_t cells);
+
   void
   addToFront (int block, std::uint64_t cells);
 
@@ -75,8 +79,16 @@ private:
   PassedFaces
   classify (int block);
 
+  static PassedFaces
+  cutFaces (const std::array<std::uint64_t, 8> &inside);
+
   void
   handOn (int block, std::uint64_t cells, int axis, bool up);
+
+  /** \brief The cell of the node at a place of the nodes' grid: in that order neighbours follow each other, and so do
+   * their blocks in memory. */
+  GridPoint
+  cellOfPlace (std::size_t place) const;
 
   void
   seedFromNodes ();
