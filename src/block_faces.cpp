@@ -6,8 +6,6 @@
 #include "support.h"
 #include "support_size.h"
 
-#include <erkpa/basis.h>
-
 #include <algorithm>
 #include <cmath>
 
@@ -17,17 +15,33 @@ namespace erkpa
 namespace
 {
 
-template <typename BasisT>
-double
-combineTerms (const float *coefficients, const Eigen::Vector3d &u)
+/** \brief All trees, as the lanes see them. */
+struct LaneTrees
 {
-  Eigen::Matrix<double, BasisT::SIZE, 1> R;
-  Eigen::Matrix<double, BasisT::SIZE, 3> G;
-  BasisT::evaluate (u, R, G);
-  double sum = 0.0;
-  for (int j = 0; j < BasisT::SIZE; ++j)
-    sum += static_cast<double> (coefficients[j]) * R[j];
-  return sum;
+  static_assert (lanes::FaceFits::MAX == FaceTree::MAX_FACES);
+  lanes::Trees::Step steps[FaceTree::MAX_FACES + 1][lanes::Trees::MAX][FaceTree::MAX_FACES - 1] = {};
+
+  LaneTrees ()
+  {
+    for (int faces = 1; faces <= FaceTree::MAX_FACES; ++faces)
+    {
+      std::size_t t = 0;
+      for (const FaceTree &tree : treesOf (faces))
+      {
+        for (std::size_t s = 0; s + 1 < static_cast<std::size_t> (faces); ++s)
+          steps[faces][t][s] = {static_cast<std::uint8_t> (tree.steps[s].face),
+                                static_cast<std::uint8_t> (tree.steps[s].other), tree.steps[s].larger};
+        ++t;
+      }
+    }
+  }
+};
+
+lanes::Trees
+treesForLanes (std::size_t faces)
+{
+  static const LaneTrees ALL;
+  return {treesOf (static_cast<int> (faces)).size (), ALL.steps[faces]};
 }
 
 } // namespace
@@ -78,7 +92,9 @@ BlockFaces::combine (const lanes::Settings &settings, double radius, const std::
     for (const std::uint32_t point : which)
       points.states[point] = lanes::State::UNSETTLED;
   combined_.assign (which.size (), Combined ());
-  voters_.clear ();
+  for (std::vector<float> &along : voters_)
+    along.clear ();
+  weights_.clear ();
   parts_.clear ();
   for (std::size_t i = 0; i < which.size (); ++i)
     askForParts (points, which[i], combined_[i]);
@@ -105,7 +121,7 @@ void
 BlockFaces::askForParts (const BlockPoints &points, std::uint32_t point, Combined &combined)
 {
   combined.first_part = parts_.size ();
-  combined.first_voter = combined.last_voter = voters_.size ();
+  combined.first_voter = combined.last_voter = weights_.size ();
   if (points.states[point] != lanes::State::DEFINED)
     return;
   const Eigen::Vector3f x = points.position (point);
@@ -122,19 +138,39 @@ BlockFaces::askForParts (const BlockPoints &points, std::uint32_t point, Combine
     part.state = lanes::State::UNDEFINED;
     parts_.push_back (part);
   }
-  const double scale = 1.0 / static_cast<double> (radius);
+  listVoters (x, radius, combined);
+}
+
+/** \brief Those that are near a point and of its groups; the last vector of them is filled up. */
+void
+BlockFaces::listVoters (const Eigen::Vector3f &x, float radius, Combined &combined)
+{
+  const std::size_t room = weights_.size () + near_.size () + lanes::MAX_WIDTH;
+  for (std::vector<float> &along : voters_)
+    along.resize (room);
+  weights_.resize (room);
+  const float scale = 1.0f / radius, fall = scale / static_cast<float> (FaceGroups::REACH);
+  std::size_t last = combined.first_voter;
   for (std::size_t n = 0; n < near_.size (); ++n)
   {
     const int node = near_[n], group = groups_.groupOfSlot (node);
-    const auto i = static_cast<std::size_t> (node);
-    const double weight = 1.0 - static_cast<double> (std::sqrt (squared_[n])) * (scale / FaceGroups::REACH);
-    if (group < 0 || group >= combined.groups || !(weight > 0.0))
-      continue;
-    const Eigen::Vector3f way (all_.coordinates (0)[i] - x[0], all_.coordinates (1)[i] - x[1],
-                               all_.coordinates (2)[i] - x[2]);
-    voters_.push_back ({node, way.cast<double> () * scale, weight});
+    const float weight = 1.0f - std::sqrt (squared_[n]) * fall;
+    for (std::size_t a = 0; a < 3; ++a)
+      voters_[a][last] =
+          (all_.coordinates (a)[static_cast<std::size_t> (node)] - x[static_cast<Eigen::Index> (a)]) * scale;
+    weights_[last] = weight;
+    last += group >= 0 && group < combined.groups && weight > 0.0f ? 1 : 0;
   }
-  combined.last_voter = voters_.size ();
+  combined.last_voter = last;
+  for (std::size_t i = 0; i < lanes::MAX_WIDTH; ++i)
+  {
+    for (std::vector<float> &along : voters_)
+      along[last + i] = 0.0f;
+    weights_[last + i] = 0.0f;
+  }
+  for (std::vector<float> &along : voters_)
+    along.resize (last + lanes::MAX_WIDTH);
+  weights_.resize (last + lanes::MAX_WIDTH);
 }
 
 void
@@ -201,21 +237,27 @@ BlockFaces::takeUp (std::size_t i, Part &part) const
     part.gradient[static_cast<Eigen::Index> (a)] = at_part_.gradients[a][i];
 }
 
-double
-BlockFaces::heightAt (const Part &part, const Eigen::Vector3d &u) const
+/** \brief FaceVote::electTree () in lanes. */
+const FaceTree &
+BlockFaces::electTree (const Combined &combined, float radius) const
 {
-  switch (settings_.basis)
+  const std::vector<FaceTree> &trees = treesOf (static_cast<int> (vote_.size ()));
+  if (trees.size () == 1)
+    return trees.front ();
+  lanes::Voters voters{combined.last_voter - combined.first_voter, {}, weights_.data () + combined.first_voter};
+  for (std::size_t a = 0; a < 3; ++a)
+    voters.u[a] = voters_[a].data () + combined.first_voter;
+  lanes::FaceFits fits{vote_.size (), settings_.basis, {}, {}};
+  for (std::size_t face = 0; face < vote_.size (); ++face)
   {
-    case lanes::Basis::CONSTANT:
-      return combineTerms<ConstantBasis> (part.coefficients.data (), u);
-    case lanes::Basis::LINEAR:
-      return combineTerms<LinearBasis> (part.coefficients.data (), u);
-    case lanes::Basis::SPHERICAL:
-      return combineTerms<SphericalBasis> (part.coefficients.data (), u);
-    case lanes::Basis::QUADRATIC:
-      break;
+    const Part &part = parts_[combined.first_part + static_cast<std::size_t> (vote_.groupOf (face))];
+    fits.coefficients[face] = part.coefficients.data ();
+    fits.scale[face] = radius / part.radius;
   }
-  return combineTerms<QuadraticBasis> (part.coefficients.data (), u);
+  std::array<float, lanes::Trees::MAX> distances;
+  engine_.measureTrees (voters, fits, treesForLanes (vote_.size ()), distances.data ());
+  const auto last = distances.begin () + static_cast<std::ptrdiff_t> (trees.size ());
+  return trees[static_cast<std::size_t> (std::min_element (distances.begin (), last) - distances.begin ())];
 }
 
 /** \brief The nodes around a point say how its groups combine; the result takes the place of the fit to all nodes. */
@@ -229,28 +271,23 @@ BlockFaces::vote (BlockPoints &points, std::uint32_t point, Combined &combined)
   }
   const auto radius = static_cast<double> (points.radii[point]);
   vote_.start (radius);
-  for (std::size_t v = combined.first_voter; v < combined.last_voter; ++v)
-    vote_.addVoter (voters_[v]);
   for (int group = 0; group < combined.groups; ++group)
   {
     const Part &part = parts_[combined.first_part + static_cast<std::size_t> (group)];
     if (part.state == lanes::State::UNDEFINED)
       continue;
     const auto own_radius = static_cast<double> (part.radius);
-    heights_.clear ();
-    for (const FaceVote::Voter &voter : vote_.voters ())
-      heights_.push_back (heightAt (part, voter.u * (radius / own_radius)));
     const Eigen::Vector3d slope =
         Eigen::Vector3f (part.coefficients[1], part.coefficients[2], part.coefficients[3]).cast<double> () / own_radius;
-    vote_.addFace (group, static_cast<double> (part.value), slope, static_cast<double> (part.nearest), heights_);
+    vote_.addFace (group, static_cast<double> (part.value), slope, static_cast<double> (part.nearest), {});
   }
   vote_.dropFarFaces ();
   points.states[point] = lanes::State::UNDEFINED;
   points.values[point] = std::nanf ("");
   double aside = static_cast<double> (points.asides[point]);
-  if (!vote_.isEmpty ())
+  if (vote_.size () > 0)
   {
-    const FaceTree &tree = vote_.electTree ();
+    const FaceTree &tree = electTree (combined, points.radii[point]);
     const std::size_t winner = vote_.winnerOf (tree);
     const Part &part = parts_[combined.first_part + static_cast<std::size_t> (vote_.groupOf (winner))];
     const double spacing = radius * std::sqrt (M_PI / static_cast<double> (points.supports[point]));

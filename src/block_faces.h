@@ -120,6 +120,9 @@ private:
   listNear (const Eigen::Vector3f &x, float radius);
 
   void
+  listVoters (const Eigen::Vector3f &x, float radius, Combined &combined);
+
+  void
   askForParts (const BlockPoints &points, std::uint32_t point, Combined &combined);
 
   void
@@ -134,8 +137,8 @@ private:
   void
   vote (BlockPoints &points, std::uint32_t point, Combined &combined);
 
-  double
-  heightAt (const Part &part, const Eigen::Vector3d &u) const;
+  const FaceTree &
+  electTree (const Combined &combined, float radius) const;
 
   void
   settleReach (BlockPoints &points, std::uint32_t point, double aside) const;
@@ -151,12 +154,12 @@ private:
   BlockNodes all_, of_part_;
   BlockPoints at_part_;
   std::vector<Combined> combined_;
-  std::vector<FaceVote::Voter> voters_;
+  std::array<std::vector<float>, 3> voters_; // of all points, (x_i - x) / ε
+  std::vector<float> weights_;               // theirs
   std::vector<Part> parts_;
   std::vector<std::uint32_t> parts_to_fit_; // those of one group
   std::vector<int> near_;                   // nodes around a point
   std::vector<float> squared_;              // their squared distances from it
-  std::vector<double> heights_;
   FaceVote vote_;
   std::size_t evaluations_ = 0, support_nodes_ = 0;
 };

@@ -14,21 +14,64 @@ FaceGroups::gather (const Eigen::Vector3d &center, double extent)
   if (faces_ == nullptr)
     return false;
   faces_->meetingsNear (center, extent, near_);
-  return std::any_of (near_.begin (), near_.end (),
-                      [this] (int m) { return faces_->meetings ()[static_cast<std::size_t> (m)].surface >= 0; });
+  center_ = center;
+  listMeetings ();
+  return separations_ > 0;
+}
+
+/** \brief Lay what every point of the ball asks of the meetings side by side. */
+void
+FaceGroups::listMeetings ()
+{
+  for (std::vector<float> &along : places_)
+    along.resize (near_.size ());
+  squared_reaches_.resize (near_.size ());
+  squared_.resize (near_.size ());
+  pair_of_meeting_.resize (near_.size ());
+  pairs_.clear ();
+  separations_ = 0;
+  auto pair = pairs_.begin (); // meetings of the same faces mostly follow each other
+  for (std::size_t i = 0; i < near_.size (); ++i)
+  {
+    const Meeting &meeting = faces_->meetings ()[static_cast<std::size_t> (near_[i])];
+    for (std::size_t a = 0; a < 3; ++a)
+    {
+      const auto axis = static_cast<Eigen::Index> (a);
+      places_[a][i] = static_cast<float> (static_cast<double> (meeting.position[axis]) - center_[axis]);
+    }
+    squared_reaches_[i] = static_cast<float> (meeting.reach * meeting.reach);
+    separations_ += meeting.surface >= 0 ? 1 : 0;
+    const auto is_of_pair = [&] (const Pair &p) { return p.face == meeting.face && p.other == meeting.other; };
+    if (pair == pairs_.end () || !is_of_pair (*pair))
+      pair = std::find_if (pairs_.begin (), pairs_.end (), is_of_pair);
+    if (pair == pairs_.end ())
+      pair = pairs_.insert (pairs_.end (), {meeting.face, meeting.other, HUGE_VALF, HUGE_VALF});
+    pair_of_meeting_[i] = static_cast<std::uint32_t> (pair - pairs_.begin ());
+  }
+}
+
+/** \brief How far x is from the meetings, squared, less the squares of their reaches. */
+void
+FaceGroups::measureMeetings (const Eigen::Vector3d &x, std::size_t count) const
+{
+  const Eigen::Vector3f from = (x - center_).cast<float> ();
+  const float *const px = places_[0].data (), *const py = places_[1].data (), *const pz = places_[2].data ();
+  float *const squared = squared_.data ();
+  for (std::size_t i = 0; i < count; ++i)
+  {
+    const float dx = px[i] - from[0], dy = py[i] - from[1], dz = pz[i] - from[2];
+    squared[i] = dx * dx + dy * dy + dz * dz;
+  }
 }
 
 bool
 FaceGroups::hasSeparationAt (const Eigen::Vector3d &x) const
 {
-  return std::any_of (near_.begin (), near_.end (),
-                      [&] (int m)
-                      {
-                        const Meeting &meeting = faces_->meetings ()[static_cast<std::size_t> (m)];
-                        const double reach = meeting.reach;
-                        return meeting.surface >= 0 &&
-                               (meeting.position.cast<double> () - x).squaredNorm () <= reach * reach;
-                      });
+  measureMeetings (x, separations_);
+  int in_reach = 0; // no way out before the end, so that several are looked at at once
+  for (std::size_t i = 0; i < separations_; ++i)
+    in_reach |= static_cast<int> (squared_[i] <= squared_reaches_[i]);
+  return in_reach != 0;
 }
 
 void
@@ -55,27 +98,22 @@ FaceGroups::listPresent ()
   }
 }
 
-/** \brief The pairs of faces that meet in reach of x; true where some are apart. */
+/** \brief How near the pairs of faces meet, in reach of x; true where some are apart. */
 bool
 FaceGroups::findPairs (const Eigen::Vector3d &x)
 {
-  pairs_.clear ();
+  measureMeetings (x, near_.size ());
+  for (Pair &pair : pairs_)
+    pair.separate = pair.joined = HUGE_VALF;
   bool any = false;
-  auto pair = pairs_.begin (); // meetings of the same faces mostly follow each other
-  for (const int m : near_)
+  for (std::size_t i = 0; i < near_.size (); ++i)
   {
-    const Meeting &meeting = faces_->meetings ()[static_cast<std::size_t> (m)];
-    const double squared = (meeting.position.cast<double> () - x).squaredNorm ();
-    if (squared > meeting.reach * meeting.reach)
+    if (!(squared_[i] <= squared_reaches_[i]))
       continue;
-    const auto is_of_pair = [&] (const Pair &p) { return p.face == meeting.face && p.other == meeting.other; };
-    if (pair == pairs_.end () || !is_of_pair (*pair))
-      pair = std::find_if (pairs_.begin (), pairs_.end (), is_of_pair);
-    if (pair == pairs_.end ())
-      pair = pairs_.insert (pairs_.end (), {meeting.face, meeting.other, HUGE_VAL, HUGE_VAL});
-    double &nearest = meeting.surface >= 0 ? pair->separate : pair->joined;
-    nearest = std::min (nearest, squared);
-    any = any || meeting.surface >= 0;
+    Pair &pair = pairs_[pair_of_meeting_[i]];
+    float &nearest = i < separations_ ? pair.separate : pair.joined;
+    nearest = std::min (nearest, squared_[i]);
+    any = any || i < separations_;
   }
   return any;
 }

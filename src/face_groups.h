@@ -3,6 +3,7 @@
 
 #include "face_map.h"
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <vector>
@@ -120,7 +121,7 @@ private:
   struct Pair
   {
     int face, other;
-    double separate, joined; // squared distances from x
+    float separate, joined; // squared distances from x
   };
 
   struct Group
@@ -128,6 +129,12 @@ private:
     int representative;
     int nodes; // around x
   };
+
+  void
+  listMeetings ();
+
+  void
+  measureMeetings (const Eigen::Vector3d &x, std::size_t count) const;
 
   void
   listPresent ();
@@ -145,14 +152,20 @@ private:
   placeOf (int face) const;
 
   const FaceMap *faces_;
-  std::vector<int> near_; // meetings
+  Eigen::Vector3d center_ = Eigen::Vector3d::Zero ();
+  std::vector<int> near_;                    // meetings, those first that keep faces apart: ...
+  std::size_t separations_ = 0;              // ... so many
+  std::array<std::vector<float>, 3> places_; // of the meetings, from the center
+  std::vector<float> squared_reaches_;
+  mutable std::vector<float> squared_; // their squared distances from the point at hand
+  std::vector<std::uint32_t> pair_of_meeting_;
   std::vector<int> face_of_slot_;
   std::vector<int> present_;         // faces of the gathered value points, sorted
   std::vector<int> place_of_slot_;   // in present_, -1 for none
   std::vector<int> representatives_; // of present_
   std::vector<int> group_of_place_;  // of present_
   std::vector<int> nodes_of_place_;  // around x: of none, and then of present_
-  std::vector<Pair> pairs_;
+  std::vector<Pair> pairs_;          // of faces that meet near the ball
   std::vector<Group> groups_;
   std::vector<int> group_of_slot_;
 };

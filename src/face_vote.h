@@ -59,7 +59,8 @@ public:
     return radius_;
   }
 
-  /** \brief What the fit of a face says: at x, of its slope there, and at each voter.
+  /** \brief What the fit of a face says: at x, of its slope there, and at each voter; where the tree is elected
+   * elsewhere, there are none.
    * \param[in] distance from x to the nearest node of the face
    */
   void
@@ -70,10 +71,11 @@ public:
   void
   dropFarFaces ();
 
-  bool
-  isEmpty () const
+  /** \brief Number of faces. */
+  std::size_t
+  size () const
   {
-    return groups_.empty ();
+    return groups_.size ();
   }
 
   int

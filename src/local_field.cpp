@@ -186,7 +186,7 @@ LocalField::evaluateFaces (const Eigen::Vector3d &x, Task task)
   vote_.dropFarFaces ();
   result_ = FieldSample ();
   thickening_ = 0.0;
-  if (!vote_.isEmpty ())
+  if (vote_.size () > 0)
   {
     const FaceTree &tree = vote_.electTree ();
     const std::size_t winner = vote_.winnerOf (tree);

@@ -23,7 +23,7 @@ public:
   nearestK (const Eigen::Vector3f &x, int k, std::vector<int> &indices,
             std::vector<float> &squared_distances) const override
   {
-    std::vector<std::pair<float, int>> found;
+    thread_local std::vector<std::pair<float, int>> found;
     grid_->nearestK (x.cast<double> (), k, found);
     store (found, indices, squared_distances);
   }
@@ -232,8 +232,8 @@ PointGrid::nearestK (const Eigen::Vector3d &x, int k, std::vector<std::pair<floa
   constexpr double MARGIN = 1.15;
   const auto wanted = std::min (static_cast<std::size_t> (k), size ());
   double reach = cell_ * std::max (0.5, std::sqrt (static_cast<double> (k) / PER_CELL));
-  std::vector<int> indices;
-  std::vector<float> squared;
+  thread_local std::vector<int> indices; // kept, for there are many small queries
+  thread_local std::vector<float> squared;
   for (withinRadius (x, reach, indices, squared); indices.size () < wanted && reach < EVERYWHERE;
        withinRadius (x, reach, indices, squared))
   {

@@ -7,6 +7,7 @@
 #include "node_table.h"
 #include "noise.h"
 #include "normal_smoothing.h"
+#include "point_grid.h"
 #include "text.h"
 #include "threads.h"
 
@@ -16,6 +17,7 @@
 #include <array>
 #include <cmath>
 #include <map>
+#include <memory>
 #include <set>
 #include <string>
 #include <tuple>
@@ -40,7 +42,7 @@ chainSeparations (const std::vector<Separation> &separations, double step)
   DisjointSets chains (separations.size ());
   if (positions.empty ())
     return chains;
-  const NeighborSearch::ConstPtr search = makeGridSearch (positions, 1);
+  const auto search = makeGridSearch (std::make_shared<const PointGrid> (positions, step, 1));
   std::vector<int> found;
   std::vector<float> squared;
   for (std::size_t i = 0; i < positions.size (); ++i)

@@ -5,16 +5,7 @@ namespace erkpa::lanes
 {
 
 // Each in a unit of its own, the only one compiled for that instruction set.
-void
-evaluateBaseline (const Settings &settings, const Nodes &nodes, const Points &points, const SharpSurfaces &sharp,
-                  const Scratch &scratch, const Samples &samples);
-void
-evaluateAvx2 (const Settings &settings, const Nodes &nodes, const Points &points, const SharpSurfaces &sharp,
-              const Scratch &scratch, const Samples &samples);
-void
-evaluateAvx512 (const Settings &settings, const Nodes &nodes, const Points &points, const SharpSurfaces &sharp,
-                const Scratch &scratch, const Samples &samples);
-extern const Search SEARCH_BASELINE, SEARCH_AVX2, SEARCH_AVX512;
+extern const Engine BASELINE, AVX2, AVX512;
 
 namespace
 {
@@ -26,11 +17,8 @@ struct Available
 
   Available ()
   {
-    static constexpr Engine BASELINE{"baseline", 4, &SEARCH_BASELINE, evaluateBaseline};
     engines[count++] = &BASELINE;
 #ifdef ERKPA_X86_LANES
-    static constexpr Engine AVX2{"AVX2", 8, &SEARCH_AVX2, evaluateAvx2};
-    static constexpr Engine AVX512{"AVX-512", 16, &SEARCH_AVX512, evaluateAvx512};
     if (__builtin_cpu_supports ("avx2") != 0 && __builtin_cpu_supports ("fma") != 0)
       engines[count++] = &AVX2;
     if (__builtin_cpu_supports ("avx512f") != 0)

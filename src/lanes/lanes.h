@@ -205,6 +205,41 @@ struct Search
   std::size_t (*countWithin) (const float *squared, std::size_t count, float limit);
 };
 
+/** \brief Nodes that vote on how faces combine: see FaceVote. Arrays must be readable up to a multiple of MAX_WIDTH,
+ * with weights of zero there. */
+struct Voters
+{
+  std::size_t count;
+  const float *u[3]; ///< (x_i - x) / ε
+  const float *weight;
+};
+
+/** \brief The fits to the faces. */
+struct FaceFits
+{
+  static constexpr std::size_t MAX = 4;
+
+  std::size_t count;
+  Basis basis;
+  const float *coefficients[MAX]; ///< of the terms in u · scale
+  float scale[MAX];
+};
+
+/** \brief Ways to combine as many faces: see FaceTree. */
+struct Trees
+{
+  struct Step
+  {
+    std::uint8_t face, other;
+    bool larger;
+  };
+
+  static constexpr std::size_t MAX = 52;
+
+  std::size_t count;
+  const Step (*steps)[FaceFits::MAX - 1]; ///< of each, one less than there are faces
+};
+
 /** \brief One instruction set. */
 struct Engine
 {
@@ -213,6 +248,9 @@ struct Engine
   const Search *search;
   void (*evaluate) (const Settings &settings, const Nodes &nodes, const Points &points, const SharpSurfaces &sharp,
                     const Scratch &scratch, const Samples &samples);
+
+  /** \brief The sum of weight · |value| at the voters for each tree. */
+  void (*measureTrees) (const Voters &voters, const FaceFits &fits, const Trees &trees, float *distances);
 };
 
 /** \brief The engines this processor can run, the widest last; never empty. */

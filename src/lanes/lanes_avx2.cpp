@@ -1,18 +1,21 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include "lane_election.h"
 #include "lane_engine.h"
 #include "lane_search.h"
 
 namespace erkpa::lanes
 {
 
-void
-evaluateAvx2 (const Settings &settings, const Nodes &nodes, const Points &points, const SharpSurfaces &sharp,
-              const Scratch &scratch, const Samples &samples)
+namespace
 {
-  evaluate<xsimd::fma3<xsimd::avx2>> (settings, nodes, points, sharp, scratch, samples);
-}
 
-extern const Search SEARCH_AVX2;
-constexpr Search SEARCH_AVX2 = makeSearch<xsimd::fma3<xsimd::avx2>> ();
+using Arch = xsimd::fma3<xsimd::avx2>;
+
+constexpr Search SEARCH = makeSearch<Arch> ();
+
+} // namespace
+
+extern const Engine AVX2;
+constexpr Engine AVX2{"AVX2", xsimd::batch<float, Arch>::size, &SEARCH, evaluate<Arch>, measureTrees<Arch>};
 
 } // namespace erkpa::lanes

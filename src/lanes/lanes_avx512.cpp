@@ -1,18 +1,21 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include "lane_election.h"
 #include "lane_engine.h"
 #include "lane_search.h"
 
 namespace erkpa::lanes
 {
 
-void
-evaluateAvx512 (const Settings &settings, const Nodes &nodes, const Points &points, const SharpSurfaces &sharp,
-                const Scratch &scratch, const Samples &samples)
+namespace
 {
-  evaluate<xsimd::avx512f> (settings, nodes, points, sharp, scratch, samples);
-}
 
-extern const Search SEARCH_AVX512;
-constexpr Search SEARCH_AVX512 = makeSearch<xsimd::avx512f> ();
+using Arch = xsimd::avx512f;
+
+constexpr Search SEARCH = makeSearch<Arch> ();
+
+} // namespace
+
+extern const Engine AVX512;
+constexpr Engine AVX512{"AVX-512", xsimd::batch<float, Arch>::size, &SEARCH, evaluate<Arch>, measureTrees<Arch>};
 
 } // namespace erkpa::lanes

@@ -1,18 +1,21 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include "lane_election.h"
 #include "lane_engine.h"
 #include "lane_search.h"
 
 namespace erkpa::lanes
 {
 
-void
-evaluateBaseline (const Settings &settings, const Nodes &nodes, const Points &points, const SharpSurfaces &sharp,
-                  const Scratch &scratch, const Samples &samples)
+namespace
 {
-  evaluate<xsimd::default_arch> (settings, nodes, points, sharp, scratch, samples);
-}
 
-extern const Search SEARCH_BASELINE;
-constexpr Search SEARCH_BASELINE = makeSearch<xsimd::default_arch> ();
+using Arch = xsimd::default_arch;
+
+constexpr Search SEARCH = makeSearch<Arch> ();
+
+} // namespace
+
+extern const Engine BASELINE;
+constexpr Engine BASELINE{"baseline", xsimd::batch<float, Arch>::size, &SEARCH, evaluate<Arch>, measureTrees<Arch>};
 
 } // namespace erkpa::lanes
