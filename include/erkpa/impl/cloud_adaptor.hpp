@@ -13,11 +13,9 @@
 #include <pcl/search/search.h>
 #include <pcl/type_traits.h>
 
-#include <algorithm>
 #include <cstdint>
-#include <future>
+#include <cstring>
 #include <string>
-#include <thread>
 #include <utility>
 #include <vector>
 
@@ -160,7 +158,32 @@ makePclSearch (const typename pcl::search::Search<PointT>::Ptr &tree, const Orie
   return std::make_shared<PclSearch<PointT>> (tree, points);
 }
 
-/** \brief Vertices in a point type of PCL; fields the mesh does not know keep their defaults. */
+/** \brief A vertex in a point type of PCL; fields the mesh does not know keep their defaults. */
+template <typename PointT>
+PointT
+toPoint (const TriangleMesh &mesh, std::size_t i)
+{
+  PointT point;
+  point.getVector3fMap () = mesh.vertices[i];
+  if constexpr (hasNormal<PointT> ())
+    point.getNormalVector3fMap () = mesh.normals[i];
+  if constexpr (kindOfAttributes<PointT> () == Attributes::COLOR)
+  {
+    const auto byte = [] (float value) {
+      return static_cast<std::uint8_t> (value < 0.0f ? 0.0f : value > 255.0f ? 255.0f : value + 0.5f);
+    };
+    if (mesh.channels == 3)
+    {
+      point.r = byte (mesh.attributes[3 * i]);
+      point.g = byte (mesh.attributes[3 * i + 1]);
+      point.b = byte (mesh.attributes[3 * i + 2]);
+    }
+  }
+  else if constexpr (kindOfAttributes<PointT> () == Attributes::INTENSITY)
+    point.intensity = mesh.channels == 1 ? mesh.attributes[i] : 0.0f;
+  return point;
+}
+
 template <typename PointT>
 void
 toPointCloud (const TriangleMesh &mesh, pcl::PointCloud<PointT> &cloud)
@@ -168,59 +191,42 @@ toPointCloud (const TriangleMesh &mesh, pcl::PointCloud<PointT> &cloud)
   cloud.resize (mesh.vertices.size ());
   cloud.is_dense = true;
   for (std::size_t i = 0; i < mesh.vertices.size (); ++i)
+    cloud[i] = toPoint<PointT> (mesh, i);
+}
+
+/** \brief The same without a cloud of that type in between. */
+template <typename PointT>
+void
+toBlob (const TriangleMesh &mesh, pcl::PCLPointCloud2 &blob)
+{
+  pcl::toPCLPointCloud2 (pcl::PointCloud<PointT> (), blob); // the fields
+  blob.width = static_cast<decltype (blob.width)> (mesh.vertices.size ());
+  blob.height = 1;
+  blob.row_step = blob.width * blob.point_step;
+  blob.is_dense = 1;
+  blob.data.resize (mesh.vertices.size () * sizeof (PointT));
+  for (std::size_t i = 0; i < mesh.vertices.size (); ++i)
   {
-    PointT &point = cloud[i];
-    point = PointT ();
-    point.getVector3fMap () = mesh.vertices[i];
-    if constexpr (hasNormal<PointT> ())
-      point.getNormalVector3fMap () = mesh.normals[i];
-    if constexpr (kindOfAttributes<PointT> () == Attributes::COLOR)
-    {
-      const auto byte = [] (float value) {
-        return static_cast<std::uint8_t> (value < 0.0f ? 0.0f : value > 255.0f ? 255.0f : value + 0.5f);
-      };
-      if (mesh.channels == 3)
-      {
-        point.r = byte (mesh.attributes[3 * i]);
-        point.g = byte (mesh.attributes[3 * i + 1]);
-        point.b = byte (mesh.attributes[3 * i + 2]);
-      }
-    }
-    else if constexpr (kindOfAttributes<PointT> () == Attributes::INTENSITY)
-      point.intensity = mesh.channels == 1 ? mesh.attributes[i] : 0.0f;
+    const PointT point = toPoint<PointT> (mesh, i);
+    std::memcpy (&blob.data[i * sizeof (PointT)], &point, sizeof (PointT));
   }
 }
 
-/** \brief Triangles as PCL has them, each with memory of its own: that is taken from several threads. */
+/** \brief Triangles as PCL has them, each with memory of its own: that comes soonest from where the mesh was made, and
+ * not from other threads, for which the system has to make new memory. */
 inline void
 toPolygons (const TriangleMesh &mesh, std::vector<pcl::Vertices> &polygons)
 {
-  const std::size_t count = mesh.triangles.size ();
-  polygons.resize (count);
-  const auto convert = [&] (std::size_t first, std::size_t last)
-  {
-    for (std::size_t i = first; i < last; ++i)
-      polygons[i].vertices.assign (mesh.triangles[i].begin (), mesh.triangles[i].end ());
-  };
-  constexpr std::size_t MANY = 100000; // worth threads
-  const std::size_t threads = count < MANY ? 1 : std::min (std::max (std::thread::hardware_concurrency (), 1u), 16u);
-  std::vector<std::future<void>> others;
-  for (std::size_t t = 1; t < threads; ++t)
-    others.push_back (std::async (std::launch::async, convert, count * t / threads, count * (t + 1) / threads));
-  convert (0, count / threads);
-  for (std::future<void> &other : others)
-    other.get ();
+  polygons.resize (mesh.triangles.size ());
+  for (std::size_t i = 0; i < mesh.triangles.size (); ++i)
+    polygons[i].vertices.assign (mesh.triangles[i].begin (), mesh.triangles[i].end ());
 }
 
 template <typename PointT>
 void
 toPolygonMeshOf (const TriangleMesh &mesh, const pcl::PCLHeader &header, pcl::PolygonMesh &output)
 {
-  {
-    pcl::PointCloud<PointT> cloud;
-    toPointCloud (mesh, cloud);
-    pcl::toPCLPointCloud2 (cloud, output.cloud);
-  }
+  toBlob<PointT> (mesh, output.cloud);
   output.header = output.cloud.header = header;
   toPolygons (mesh, output.polygons);
 }
