@@ -12,40 +12,6 @@
 namespace erkpa
 {
 
-namespace
-{
-
-/** \brief All trees, as the lanes see them. */
-struct LaneTrees
-{
-  static_assert (lanes::FaceFits::MAX == FaceTree::MAX_FACES);
-  lanes::Trees::Step steps[FaceTree::MAX_FACES + 1][lanes::Trees::MAX][FaceTree::MAX_FACES - 1] = {};
-
-  LaneTrees ()
-  {
-    for (int faces = 1; faces <= FaceTree::MAX_FACES; ++faces)
-    {
-      std::size_t t = 0;
-      for (const FaceTree &tree : treesOf (faces))
-      {
-        for (std::size_t s = 0; s + 1 < static_cast<std::size_t> (faces); ++s)
-          steps[faces][t][s] = {static_cast<std::uint8_t> (tree.steps[s].face),
-                                static_cast<std::uint8_t> (tree.steps[s].other), tree.steps[s].larger};
-        ++t;
-      }
-    }
-  }
-};
-
-lanes::Trees
-treesForLanes (std::size_t faces)
-{
-  static const LaneTrees ALL;
-  return {treesOf (static_cast<int> (faces)).size (), ALL.steps[faces]};
-}
-
-} // namespace
-
 BlockFaces::BlockFaces (const ImplicitField &field, const lanes::Engine &engine, const lanes::Settings &settings,
                         double unit)
     : field_ (field), engine_ (engine), settings_ (settings), unit_ (unit), groups_ (field.faces ()),
@@ -255,7 +221,7 @@ BlockFaces::electTree (const Combined &combined, float radius) const
     fits.scale[face] = radius / part.radius;
   }
   std::array<float, lanes::Trees::MAX> distances;
-  engine_.measureTrees (voters, fits, treesForLanes (vote_.size ()), distances.data ());
+  engine_.measureTrees (voters, fits, laneTreesOf (vote_.size ()), distances.data ());
   const auto last = distances.begin () + static_cast<std::ptrdiff_t> (trees.size ());
   return trees[static_cast<std::size_t> (std::min_element (distances.begin (), last) - distances.begin ())];
 }

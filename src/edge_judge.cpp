@@ -76,7 +76,8 @@ EdgeJudge::sineAfterCollapse (int h) const
                    const int a = edges_.end (side), b = apex (side);
                    const Vector3d towards = towards_ends + facing (a) + facing (b);
                    const TriangleShape before = shapeOf (side);
-                   sine_before = std::min (sine_before, before.sine);
+                   const double own_sine = before.sine ();
+                   sine_before = std::min (sine_before, own_sine);
                    if (!towards.isZero (0.0))
                      steady_before = std::min (steady_before, cosine (before.area, towards));
                    if (a == to || b == to)
@@ -85,13 +86,13 @@ EdgeJudge::sineAfterCollapse (int h) const
                    const bool may_collapse = isInside (to) && isInside (a) && isInside (b);
                    if (after.shortest < tiny && may_collapse)
                      return; // is going to, too
-                   sine = std::min (sine, after.sine);
+                   sine = std::min (sine, after.sine ());
                    const bool moves = std::abs (after.area.dot (step)) > OFF_SURFACE * voxel_ * after.area.norm ();
                    if (is_joint)
                      steady = std::min (steady, cosine (before.area, after.area));
-                   else if (moves || (before.sine >= WELL_SHAPED && cosine (before.area, after.area) < STEADY))
+                   else if (moves || (own_sine >= WELL_SHAPED && cosine (before.area, after.area) < STEADY))
                      steady = -1.0;
-                   else if (before.sine < WELL_SHAPED || !towards.isZero (0.0))
+                   else if (own_sine < WELL_SHAPED || !towards.isZero (0.0))
                      steady = std::min (steady, cosine (after.area, towards));
                  });
   const bool is_steady = is_joint ? steady >= STEADY : isSteady (steady_before, steady);
@@ -173,7 +174,7 @@ EdgeJudge::gainOfFlip (int h) const
       return -1.0;
   const TriangleShape one = shapeOf (h), other = shapeOf (g);
   const TriangleShape new_one (at (c), at (d), at (b)), new_other (at (d), at (c), at (a));
-  const double gain = std::min (new_one.sine, new_other.sine) - std::min (one.sine, other.sine);
+  const double gain = std::min (new_one.sine (), new_other.sine ()) - std::min (one.sine (), other.sine ());
   if (gain <= 0.0 || !isNearlyFlat (a, b, c, d) || edges_.between (c, d) >= 0)
     return -1.0;
   const Vector3d towards = facing (a) + facing (b) + facing (c) + facing (d);

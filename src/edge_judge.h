@@ -17,8 +17,8 @@ namespace erkpa
 struct TriangleShape
 {
   Eigen::Vector3d area;
-  double sine;     ///< of its smallest angle
   double shortest; ///< squared length of its shortest side
+  double others;   ///< product of those of the others
 
   TriangleShape (const Eigen::Vector3d &a, const Eigen::Vector3d &b, const Eigen::Vector3d &c)
       : area ((b - a).cross (c - a))
@@ -27,18 +27,21 @@ struct TriangleShape
     const double longest = std::max (ab, std::max (bc, ca)),
                  middle = std::max (std::min (ab, bc), std::min (std::max (ab, bc), ca));
     shortest = std::min (ab, std::min (bc, ca));
-    sine = shortest > 0.0 ? std::sqrt (area.squaredNorm () / (middle * longest)) : 0.0;
+    others = middle * longest;
   }
 
-  /** \brief Whether the sine of the smallest angle is below a bound: without a root, for it is asked of all triangles.
-   */
-  static bool
-  isNarrow (const Eigen::Vector3d &a, const Eigen::Vector3d &b, const Eigen::Vector3d &c, double least_sine)
+  /** \brief Of its smallest angle. */
+  double
+  sine () const
   {
-    const double ab = (b - a).squaredNorm (), bc = (c - b).squaredNorm (), ca = (a - c).squaredNorm ();
-    const double longest = std::max (ab, std::max (bc, ca)),
-                 middle = std::max (std::min (ab, bc), std::min (std::max (ab, bc), ca));
-    return (b - a).cross (c - a).squaredNorm () < least_sine * least_sine * middle * longest;
+    return shortest > 0.0 ? std::sqrt (area.squaredNorm () / others) : 0.0;
+  }
+
+  /** \brief Whether that is below a bound: without a root, for it is asked of all triangles. */
+  bool
+  isNarrow (double bound) const
+  {
+    return area.squaredNorm () <= bound * bound * others;
   }
 };
 
@@ -64,12 +67,6 @@ public:
   shapeOf (int h) const
   {
     return {at (edges_.start (h)), at (edges_.end (h)), at (apex (h))};
-  }
-
-  bool
-  isNarrow (int h, double least_sine) const
-  {
-    return TriangleShape::isNarrow (at (edges_.start (h)), at (edges_.end (h)), at (apex (h)), least_sine);
   }
 
   /** \brief The sine of the smallest angle around the start of a half-edge once it is collapsed.

@@ -50,7 +50,7 @@ FaceGroups::listMeetings ()
   }
 }
 
-/** \brief How far x is from the meetings, squared, less the squares of their reaches. */
+/** \brief How far x is from the first \a count meetings, squared. */
 void
 FaceGroups::measureMeetings (const Eigen::Vector3d &x, std::size_t count) const
 {

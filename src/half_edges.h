@@ -25,6 +25,10 @@ public:
 
   HalfEdges (std::vector<std::array<int, 3>> &&triangles, std::size_t vertex_count, int threads);
 
+  HalfEdges (const HalfEdges &) = delete;
+  HalfEdges &
+  operator= (const HalfEdges &) = delete;
+
   static int
   next (int h)
   {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "lane_settings.h"
 
+#include "face_tree.h"
 #include "support.h"
 #include "support_size.h"
 
@@ -45,6 +46,28 @@ laneConstraintOf (Constraint constraint)
   return lanes::Constraint::HERMITE;
 }
 
+/** \brief All trees, as the lanes see them. */
+struct LaneTrees
+{
+  static_assert (lanes::FaceFits::MAX == FaceTree::MAX_FACES);
+  lanes::Trees::Step steps[FaceTree::MAX_FACES + 1][lanes::Trees::MAX][FaceTree::MAX_FACES - 1] = {};
+
+  LaneTrees ()
+  {
+    for (int faces = 1; faces <= FaceTree::MAX_FACES; ++faces)
+    {
+      std::size_t t = 0;
+      for (const FaceTree &tree : treesOf (faces))
+      {
+        for (std::size_t s = 0; s + 1 < static_cast<std::size_t> (faces); ++s)
+          steps[faces][t][s] = {static_cast<std::uint8_t> (tree.steps[s].face),
+                                static_cast<std::uint8_t> (tree.steps[s].other), tree.steps[s].larger};
+        ++t;
+      }
+    }
+  }
+};
+
 } // namespace
 
 std::optional<lanes::Kernel>
@@ -81,6 +104,13 @@ laneSettingsOf (const ImplicitField &field)
   settings.k = by_nearest ? std::min (field.supportSize ().k (), static_cast<int> (field.points ().size ())) : 0;
   settings.min_nodes = static_cast<int> (std::min (Support::MIN_NODES, field.points ().size ()));
   return settings;
+}
+
+lanes::Trees
+laneTreesOf (std::size_t faces)
+{
+  static const LaneTrees ALL;
+  return {treesOf (static_cast<int> (faces)).size (), ALL.steps[faces]};
 }
 
 std::size_t

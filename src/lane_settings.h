@@ -19,6 +19,10 @@ laneKernelOf (const FieldOptions &options);
 lanes::Settings
 laneSettingsOf (const ImplicitField &field);
 
+/** \brief All ways to combine as many faces, in the order of treesOf (). */
+lanes::Trees
+laneTreesOf (std::size_t faces);
+
 /** \brief Number of terms of a basis. */
 std::size_t
 termsOf (lanes::Basis basis);

@@ -69,7 +69,7 @@ private:
   using Regions = std::vector<std::uint16_t>; // per vertex
 
   static constexpr std::size_t LAYOUTS = 2;
-  static constexpr int BITS = 5; // of a region's number, along each axis
+  static constexpr int BITS = 4; // of a region's number, along each axis
   static constexpr std::size_t COUNT = std::size_t (1) << 3 * BITS;
 
   /** \brief A number for the region of a place. They repeat far away: those of one number are one region. */

@@ -167,7 +167,7 @@ private:
   bool
   isNarrow (int h) const
   {
-    return edges_.isAlive (h) && judge_.isNarrow (h, NARROW);
+    return edges_.isAlive (h) && judge_.shapeOf (h).isNarrow (NARROW);
   }
 
   /** \brief Mend the triangles around which anything has changed since the last pass. */
@@ -190,7 +190,7 @@ private:
   bool
   mend (int h, Worker &worker)
   {
-    const double sine = judge_.shapeOf (h).sine;
+    const double sine = judge_.shapeOf (h).sine ();
     std::array<std::pair<double, int>, 3> sides;
     for (int i = 0; i < 3; ++i)
       sides[static_cast<std::size_t> (i)] = {judge_.squaredLength (h + i), h + i};

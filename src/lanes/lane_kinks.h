@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include "lane_extent.h"
 #include "lane_surfaces.h"
 
 namespace erkpa::lanes
@@ -33,7 +34,8 @@ public:
     for (int s = 0; s < surfaces (); ++s)
     {
       below_[s] = above_[s] = B (0.0f);
-      extents_[s] = near_.surfaces[s]->distance_at == nullptr ? B (1.0f) : extentOf (s).presence;
+      const Surface &surface = *near_.surfaces[s];
+      extents_[s] = surface.distance_at == nullptr ? B (1.0f) : LaneExtent<B> (surface, first, scale).presence ();
       seeFrom (s);
     }
     for (int k = 0; k < corners (); ++k)
@@ -198,12 +200,6 @@ private:
 
   using Mask = decltype (B () < B ());
 
-  /** \brief How much of a limited surface is in force, by t: LimitedSurface::presence (). */
-  struct ExtentPresence
-  {
-    B presence, slope, t;
-  };
-
   using Corner = typename LaneSurfaces<B>::Corner;
 
   int
@@ -212,28 +208,13 @@ private:
     return COUNT == ANY_COUNT ? near_.corner_count : 0;
   }
 
-  ExtentPresence
-  extentOf (int s) const
-  {
-    const Surface &surface = *near_.surfaces[s];
-    const B distance = B::load_unaligned (surface.distance_at + first_), one (1.0f);
-    const B along = surface.fade > 0.0f ? distance / B (surface.fade) : B (2.0f) * distance * scale_ - one;
-    const B t = xsimd::min (xsimd::max (along, B (0.0f)), one);
-    return {one - t * t * (B (3.0f) - B (2.0f) * t), B (-6.0f) * t * (one - t), t};
-  }
-
   /** \brief ε∇ of what a surface's extent leaves of it. */
   B
   changeOfExtent (int s, int axis, B radius_gradient) const
   {
     const Surface &surface = *near_.surfaces[s];
-    if (surface.distance_at == nullptr)
-      return B (0.0f);
-    const ExtentPresence extent = extentOf (s);
-    const B away = B::load_unaligned (surface.away_at[axis] + first_), one (1.0f);
-    // The automatic fade goes by 2 d / ε - 1.
-    return extent.slope * (surface.fade > 0.0f ? away / (B (surface.fade) * scale_)
-                                               : B (2.0f) * away - (extent.t + one) * radius_gradient);
+    return surface.distance_at == nullptr ? B (0.0f)
+                                          : LaneExtent<B> (surface, first_, scale_).change (axis, radius_gradient);
   }
 
   /** \brief ε∇ of what the extents of its surfaces leave of a kink or a corner. */
