@@ -349,16 +349,20 @@ placesOnBox (const Vector3d &half)
 TEST_F (BlockFieldTest, AgreesWithTheDefinitionWhereSharpSurfacesPass)
 {
   const Vector3d half (0.5, 0.35, 0.25);
+  const erkpa::RadiusFunction growing = [] (const Vector3d &x) { return 0.08 + 0.01 * x[0]; };
   for (const Order order : {Order::LINEAR, Order::SPHERICAL})
-    for (const bool by_radius : {false, true})
+    for (const char *const support : {"nearest", "radius", "function"}) // some 20 nodes each
     {
-      FieldOptions options = optionsOf (order, 20);
+      const bool by_nearest = support[0] == 'n', by_radius = support[0] == 'r';
+      FieldOptions options = optionsOf (order, by_nearest ? 20 : 0, by_radius ? 0.08 : 0.0);
+      if (!by_nearest && !by_radius)
+        options.radius_function = growing;
       for (const Eigen::Vector4d &plane : shapes::boxBisectors (half))
         options.sharp_surfaces.push_back (shapes::plane (plane));
       erkpa::SharpSurface::ConstPtr ball; // curved: its kink looks one way only
       ASSERT_TRUE (erkpa::makeSharpSurface (erkpa::SurfaceModel::SPHERE, {0.5f, 0.0f, 0.0f, 0.2f}, ball).ok ());
       options.sharp_surfaces.push_back (ball);
-      options.radius = by_radius ? 0.08 : 0.0; // with some 20 nodes in it, too
+      SCOPED_TRACE (support);
       expectAgreement (*shapes::field (shapes::box (6000, half), options), placesOnBox (half));
     }
 }
