@@ -51,7 +51,7 @@ readField (const CloudBytes &cloud, const std::string &name, std::vector<float> 
     names += (names.empty () ? "" : ", ") + other.name;
   if (field == cloud.fields.end ())
     return {Status::INVALID_SETTING, "the cloud has no field \"" + name + "\": it has " + names};
-  const Outcome bad{Status::INVALID_SETTING, "the field \"" + name + "\" of the cloud is not a number of a known type"};
+  Outcome bad{Status::INVALID_SETTING, "the field \"" + name + "\" of the cloud is not a number of a known type"};
   const auto size = static_cast<std::size_t> (pcl::getFieldSize (field->datatype));
   if (size == 0 || field->offset + size > cloud.point_step)
     return bad;
@@ -314,7 +314,7 @@ reconstruct (const pcl::PCLPointCloud2 &cloud, const Options &options, TriangleM
   report = Report ();
   if (field != nullptr)
     field->reset ();
-  const Outcome outcome = run (cloud, options, progress, {&mesh, field, &report});
+  Outcome outcome = run (cloud, options, progress, {&mesh, field, &report});
   if (!outcome.ok ())
     mesh.clear ();
   return outcome;
@@ -326,7 +326,7 @@ reconstruct (const pcl::PCLPointCloud2 &cloud, const Options &options, pcl::Poly
 {
   mesh = pcl::PolygonMesh ();
   TriangleMesh triangles;
-  const Outcome outcome = reconstruct (cloud, options, triangles, report, field, progress);
+  Outcome outcome = reconstruct (cloud, options, triangles, report, field, progress);
   toPolygonMesh (triangles, attributesOf (cloud), cloud.header, mesh);
   return outcome;
 }

@@ -189,7 +189,10 @@ FaceGroups::countNodes (const std::vector<int> &near)
 {
   nodes_of_place_.assign (present_.size () + 1, 0);
   for (const int slot : near)
-    ++nodes_of_place_[static_cast<std::size_t> (place_of_slot_[static_cast<std::size_t> (slot)] + 1)];
+  {
+    const int place = place_of_slot_[static_cast<std::size_t> (slot)];
+    ++nodes_of_place_[static_cast<std::size_t> (place) + 1]; // -1 wraps around to 0
+  }
   groups_.clear ();
   for (std::size_t place = 0; place < present_.size (); ++place)
   {
