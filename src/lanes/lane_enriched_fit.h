@@ -87,7 +87,7 @@ public:
     for (int j = 0; j < size (); ++j)
       a_[j] = at_x_[j];
     solve (a_);
-    Change all, below[KinksT::MAX_COUNT], above[KinksT::MAX_COUNT];
+    WeightChange<B> all, below[KinksT::MAX_COUNT], above[KinksT::MAX_COUNT];
     B by_u[3] = {B (0.0f), B (0.0f), B (0.0f)}, by_radius (0.0f);
     weights_.visitNodes ([&] (std::size_t i, B, B t, const B *u)
                          { addResidual (i, t, u, by_u, by_radius, all, below, above); });
@@ -140,28 +140,6 @@ public:
 private:
   using TermsT = Terms<B, BASIS>;
   static constexpr int MAX_SIZE = SIZE + KinksT::MAX_TERMS;
-
-  /** \brief A sum of changes of weights with x: Σ w' u and Σ w' t², w' = dw/dt / t. */
-  struct Change
-  {
-    B by_u[3] = {B (0.0f), B (0.0f), B (0.0f)};
-    B by_radius = B (0.0f);
-
-    void
-    add (B slope, const B *u, B t)
-    {
-      for (int a = 0; a < 3; ++a)
-        by_u[a] = xsimd::fma (slope, u[a], by_u[a]);
-      by_radius = xsimd::fma (slope, t * t, by_radius);
-    }
-
-    /** \brief ε ∇ of the sum of the weights. */
-    B
-    along (int a, const B *growth) const
-    {
-      return fnma (B (0.5f) * by_radius, growth[a], -by_u[a]);
-    }
-  };
 
   /** \brief Number of terms. */
   int
@@ -304,7 +282,8 @@ private:
 
   /** \brief The residual of the fit at a node, by which the change of its weight moves f; and that change by itself. */
   void
-  addResidual (std::size_t i, B t, const B *u, B *by_u, B &by_radius, Change &all, Change *below, Change *above) const
+  addResidual (std::size_t i, B t, const B *u, B *by_u, B &by_radius, WeightChange<B> &all, WeightChange<B> *below,
+               WeightChange<B> *above) const
   {
     const std::size_t node = support_.node (i);
     B n[3], R[MAX_SIZE], G[KinksT::MAX_TERMS][3];

@@ -284,31 +284,12 @@ private:
     }
   }
 
-  /** \brief A corner's term at a node; which of its surfaces is lower is for the third to say: see
-   * Enrichment::isSecondLower (). */
   void
   evaluateCorner (std::size_t node, int k, B &value, B *gradient) const
   {
-    const Corner &corner = near_.corners[k];
-    const Surface &a = *near_.surfaces[corner.a], &b = *near_.surfaces[corner.b], &c = *near_.surfaces[corner.c];
-    float turn = 0.0f;
-    for (int i = 0; i < 3; ++i)
-      turn += (corner.scale_a * a.gradient[i][node] - corner.scale_b * b.gradient[i][node]) * c.gradient[i][node];
-    const bool is_above = c.theta[node] >= 0.0f;
-    const auto piece = [&] (float sign, float &height, float *slope)
-    {
-      const bool is_b = sign * turn > 0.0f ? is_above : !is_above;
-      const Surface &lower = is_b ? b : a;
-      const float scale = sign * (is_b ? corner.scale_b : corner.scale_a);
-      height = scale * lower.theta[node];
-      const bool is_on = height > 0.0f || (height >= 0.0f && scale > 0.0f);
-      height = is_on ? height : 0.0f;
-      for (int i = 0; i < 3; ++i)
-        slope[i] = is_on ? scale * lower.gradient[i][node] : 0.0f;
-    };
     float height = 0.0f, slope[3], height_behind = 0.0f, slope_behind[3];
-    piece (1.0f, height, slope);
-    piece (-1.0f, height_behind, slope_behind);
+    near_.evaluateCorner (k, node, 1.0f, height, slope);
+    near_.evaluateCorner (k, node, -1.0f, height_behind, slope_behind);
     value = xsimd::select (is_behind_[k], B (height_behind), B (height)) * scale_;
     for (int i = 0; i < 3; ++i)
       gradient[i] = xsimd::select (is_behind_[k], B (slope_behind[i]), B (slope[i]));

@@ -183,11 +183,7 @@ countWithin (const float *squared, std::size_t count, float limit)
 
 /** \brief The search in vectors of one instruction set. */
 template <typename ArchT>
-constexpr Search
-makeSearch ()
-{
-  using B = xsimd::batch<float, ArchT>;
-  return {findWithin<B>, copyWithin<B>, countWithin<B>};
-}
+constexpr Search SEARCH{findWithin<xsimd::batch<float, ArchT>>, copyWithin<xsimd::batch<float, ArchT>>,
+                        countWithin<xsimd::batch<float, ArchT>>};
 
 } // namespace erkpa::lanes

@@ -51,6 +51,28 @@ struct LaneSurfaces
     }
   }
 
+  /** \brief A corner's term at a node, and its slope; which of its surfaces is lower is for the third to say: see
+   * Enrichment::isSecondLower ().
+   * \param[in] sign -1: seen from behind
+   */
+  void
+  evaluateCorner (int k, std::size_t node, float sign, float &height, float *slope) const
+  {
+    const Corner &corner = corners[k];
+    const Surface &a = *surfaces[corner.a], &b = *surfaces[corner.b], &c = *surfaces[corner.c];
+    float turn = 0.0f;
+    for (int i = 0; i < 3; ++i)
+      turn += (corner.scale_a * a.gradient[i][node] - corner.scale_b * b.gradient[i][node]) * c.gradient[i][node];
+    const bool is_above = c.theta[node] >= 0.0f, is_b = sign * turn > 0.0f ? is_above : !is_above;
+    const Surface &lower = is_b ? b : a;
+    const float scale = sign * (is_b ? corner.scale_b : corner.scale_a);
+    height = scale * lower.theta[node];
+    const bool is_on = height > 0.0f || (height >= 0.0f && scale > 0.0f);
+    height = is_on ? height : 0.0f;
+    for (int i = 0; i < 3; ++i)
+      slope[i] = is_on ? scale * lower.gradient[i][node] : 0.0f;
+  }
+
 private:
   /** \brief θ of a reversible surface, a plane, is a distance. One that is limited is gone at a distance. */
   static bool

@@ -8,6 +8,31 @@
 namespace erkpa::lanes
 {
 
+/** \brief A sum of changes of weights with x: Σ w' u and Σ w' t², w' = dw/dt / t. */
+template <typename B>
+struct WeightChange
+{
+  B by_u[3] = {B (0.0f), B (0.0f), B (0.0f)};
+  B by_radius = B (0.0f);
+
+  void
+  add (B slope, const B *u, B t)
+  {
+    for (int a = 0; a < 3; ++a)
+      by_u[a] = xsimd::fma (slope, u[a], by_u[a]);
+    by_radius = xsimd::fma (slope, t * t, by_radius);
+  }
+
+  /** \brief ε ∇ of the sum of the weights.
+   * \param[in] growth 2 ∇ε
+   */
+  B
+  along (int a, const B *growth) const
+  {
+    return fnma (B (0.5f) * by_radius, growth[a], -by_u[a]);
+  }
+};
+
 /** \brief What a node, the i-th to visit, brings into the sums at the evaluation points: its weight w(t) Δx_i, and what
  * it asks for. */
 template <typename B, template <typename> class KernelT>

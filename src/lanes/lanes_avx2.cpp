@@ -6,16 +6,8 @@
 namespace erkpa::lanes
 {
 
-namespace
-{
-
 using Arch = xsimd::fma3<xsimd::avx2>;
-
-constexpr Search SEARCH = makeSearch<Arch> ();
-
-} // namespace
-
 extern const Engine AVX2;
-constexpr Engine AVX2{"AVX2", xsimd::batch<float, Arch>::size, &SEARCH, evaluate<Arch>, measureTrees<Arch>};
+constexpr Engine AVX2{"AVX2", xsimd::batch<float, Arch>::size, &SEARCH<Arch>, evaluate<Arch>, measureTrees<Arch>};
 
 } // namespace erkpa::lanes

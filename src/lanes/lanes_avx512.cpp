@@ -6,16 +6,8 @@
 namespace erkpa::lanes
 {
 
-namespace
-{
-
 using Arch = xsimd::avx512f;
-
-constexpr Search SEARCH = makeSearch<Arch> ();
-
-} // namespace
-
 extern const Engine AVX512;
-constexpr Engine AVX512{"AVX-512", xsimd::batch<float, Arch>::size, &SEARCH, evaluate<Arch>, measureTrees<Arch>};
+constexpr Engine AVX512{"AVX-512", xsimd::batch<float, Arch>::size, &SEARCH<Arch>, evaluate<Arch>, measureTrees<Arch>};
 
 } // namespace erkpa::lanes

@@ -6,16 +6,9 @@
 namespace erkpa::lanes
 {
 
-namespace
-{
-
 using Arch = xsimd::default_arch;
-
-constexpr Search SEARCH = makeSearch<Arch> ();
-
-} // namespace
-
 extern const Engine BASELINE;
-constexpr Engine BASELINE{"baseline", xsimd::batch<float, Arch>::size, &SEARCH, evaluate<Arch>, measureTrees<Arch>};
+constexpr Engine BASELINE{"baseline", xsimd::batch<float, Arch>::size, &SEARCH<Arch>, evaluate<Arch>,
+                          measureTrees<Arch>};
 
 } // namespace erkpa::lanes
