@@ -149,7 +149,7 @@ BlockNodes::copyPositions ()
   for (std::size_t a = 0; a < 3; ++a)
   {
     makeRoom (per_node * count_ + lanes::MAX_WIDTH, positions_[a]);
-    const std::vector<float> &from = table_.grid->coordinates (static_cast<int> (a));
+    const LargeVector<float> &from = table_.grid->coordinates (static_cast<int> (a));
     const auto center = static_cast<float> (center_[static_cast<Eigen::Index> (a)]);
     for (std::size_t i = 0; i < count_; ++i)
       positions_[a][i] = (from[places_[i]] - center) * scale;

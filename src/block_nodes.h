@@ -134,7 +134,7 @@ private:
   const ImplicitField &field_;
   const NodeTable &table_;
   const lanes::Search &search_;
-  const std::vector<std::uint32_t> &index_;
+  const LargeVector<std::uint32_t> &index_;
   double inverse_unit_;
   Eigen::Vector3d center_ = Eigen::Vector3d::Zero ();
   std::size_t count_ = 0, value_points_ = 0;

@@ -17,23 +17,24 @@ namespace
 using Triangle = std::array<int, 3>;
 
 /** \brief The places of the triangles that have a marked vertex. */
-std::vector<std::size_t>
-findTouching (const std::vector<char> &marks, int threads, const std::vector<Triangle> &triangles)
+LargeVector<std::size_t>
+findTouching (const std::vector<char> &marks, int threads, const LargeVector<Triangle> &triangles)
 {
   const auto is_marked = [&marks] (int v) { return marks[static_cast<std::size_t> (v)] != 0; };
-  return parallelCollect<std::size_t> (triangles.size (), threads,
-                                       [&] (std::size_t first, std::size_t last, std::vector<std::size_t> &found)
-                                       {
-                                         for (std::size_t i = first; i < last; ++i)
-                                           if (std::any_of (triangles[i].begin (), triangles[i].end (), is_marked))
-                                             found.push_back (i);
-                                       });
+  return parallelCollect<LargeVector<std::size_t>> (
+      triangles.size (), threads,
+      [&] (std::size_t first, std::size_t last, LargeVector<std::size_t> &found)
+      {
+        for (std::size_t i = first; i < last; ++i)
+          if (std::any_of (triangles[i].begin (), triangles[i].end (), is_marked))
+            found.push_back (i);
+      });
 }
 
 /** \brief The vertices to cut away: beyond the limit, and connected to the border through such vertices. */
 std::vector<char>
-findBeyondBorder (double limit, int threads, const std::vector<int> &border, const std::vector<Triangle> &triangles,
-                  const std::vector<double> &offsets)
+findBeyondBorder (double limit, int threads, const LargeVector<int> &border, const LargeVector<Triangle> &triangles,
+                  const LargeVector<double> &offsets)
 {
   std::vector<char> beyond (offsets.size (), 0);
   parallelRanges (offsets.size (), threads,
@@ -72,7 +73,7 @@ public:
   }
 
   void
-  clip (const Triangle &triangle, std::vector<Triangle> &kept)
+  clip (const Triangle &triangle, LargeVector<Triangle> &kept)
   {
     std::array<int, 4> polygon{};
     std::size_t size = 0;
@@ -139,7 +140,7 @@ private:
 } // namespace
 
 void
-trimBorder (double limit, int threads, std::vector<int> &border, std::vector<Triangle> &triangles,
+trimBorder (double limit, int threads, LargeVector<int> &border, LargeVector<Triangle> &triangles,
             SurfaceVertices &vertices)
 {
   if (border.empty ())
@@ -148,9 +149,9 @@ trimBorder (double limit, int threads, std::vector<int> &border, std::vector<Tri
   if (beyond.empty ())
     return;
   const std::size_t first_new = vertices.positions.size ();
-  const std::vector<std::size_t> touching = findTouching (beyond, threads, triangles);
+  const LargeVector<std::size_t> touching = findTouching (beyond, threads, triangles);
   Clipper clipper (limit, beyond, vertices);
-  std::vector<Triangle> clipped;
+  LargeVector<Triangle> clipped;
   for (const std::size_t index : touching)
     clipper.clip (triangles[index], clipped);
   std::size_t kept = touching.front ();
@@ -170,7 +171,7 @@ trimBorder (double limit, int threads, std::vector<int> &border, std::vector<Tri
 }
 
 void
-splitFans (const std::vector<int> &border, int threads, std::vector<Triangle> &triangles, SurfaceVertices &vertices)
+splitFans (const LargeVector<int> &border, int threads, LargeVector<Triangle> &triangles, SurfaceVertices &vertices)
 {
   if (border.empty ())
     return;

@@ -20,14 +20,14 @@ namespace erkpa
  * \param[in,out] vertices new vertices on the cut are appended, only their positions filled in
  */
 void
-trimBorder (double limit, int threads, std::vector<int> &border, std::vector<std::array<int, 3>> &triangles,
+trimBorder (double limit, int threads, LargeVector<int> &border, LargeVector<std::array<int, 3>> &triangles,
             SurfaceVertices &vertices);
 
 /** \brief Give each fan of triangles around a vertex a vertex of its own, so that borders do not touch in a point.
  * \param[in] border all vertices on the border; others may be among them
  */
 void
-splitFans (const std::vector<int> &border, int threads, std::vector<std::array<int, 3>> &triangles,
+splitFans (const LargeVector<int> &border, int threads, LargeVector<std::array<int, 3>> &triangles,
            SurfaceVertices &vertices);
 
 } // namespace erkpa

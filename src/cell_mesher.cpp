@@ -20,7 +20,7 @@ using Triangle = std::array<int, 3>;
 /** \brief Append the triangles of a loop; false, and none of them, where it needs a vertex of its own. */
 bool
 triangulateRing (const int *ring, std::size_t size, const LoopEdges &edges, const SurfaceVertices &vertices,
-                 std::vector<Triangle> &triangles)
+                 LargeVector<Triangle> &triangles)
 {
   if (size == 3)
   {
@@ -134,7 +134,7 @@ private:
 
   /** \brief The sides of the loop in faces whose other cell has no surface. */
   void
-  findBorder (const GridPlace &cell, const LoopEdges &edges, std::vector<int> &border) const
+  findBorder (const GridPlace &cell, const LoopEdges &edges, LargeVector<int> &border) const
   {
     for (std::size_t i = 0; i < size_; ++i)
     {
@@ -155,13 +155,13 @@ private:
 } // namespace
 
 bool
-triangulateCell (const CellLoop &loop, const SurfaceVertices &vertices, std::vector<Triangle> &triangles)
+triangulateCell (const CellLoop &loop, const SurfaceVertices &vertices, LargeVector<Triangle> &triangles)
 {
   return triangulateRing (loop.ring.data (), loop.ring.size (), loop.edges, vertices, triangles);
 }
 
 void
-addFan (const std::vector<int> &ring, int center, std::vector<Triangle> &triangles)
+addFan (const std::vector<int> &ring, int center, LargeVector<Triangle> &triangles)
 {
   for (std::size_t i = 0; i < ring.size (); ++i)
     triangles.push_back ({ring[i], ring[(i + 1) % ring.size ()], center});
@@ -173,9 +173,9 @@ meshCells (const SparseGrid &grid, int threads, const SurfaceVertices &vertices)
   constexpr std::size_t STRETCH = 256, TRIANGLES = 40; // blocks, and what many of them have
   const auto blocks = static_cast<std::size_t> (grid.blockCount ());
   const std::size_t count = (blocks + STRETCH - 1) / STRETCH;
-  std::vector<std::vector<Triangle>> triangles (count);
-  std::vector<std::vector<CellLoop>> centered (count), mixed (count);
-  std::vector<std::vector<int>> border (count);
+  std::vector<LargeVector<Triangle>> triangles (count);
+  std::vector<LargeVector<CellLoop>> centered (count), mixed (count);
+  std::vector<LargeVector<int>> border (count);
   parallelFor (
       count, threads, [] { return 0; },
       [&] (int, std::size_t i)

@@ -20,10 +20,10 @@ struct CellLoop
 /** \brief What the cells give. */
 struct CellMesh
 {
-  std::vector<std::array<int, 3>> triangles;
-  std::vector<CellLoop> centered_loops; ///< need a vertex of their own inside the cell
-  std::vector<CellLoop> mixed_loops; ///< have vertices on several sides of sharp surfaces, and may have a crease inside
-  std::vector<int> border; ///< vertices of the sides beyond which the surface does not go on, each once or more
+  LargeVector<std::array<int, 3>> triangles;
+  LargeVector<CellLoop> centered_loops; ///< need a vertex of their own inside the cell
+  LargeVector<CellLoop> mixed_loops; ///< have vertices on several sides of sharp surfaces, and may have a crease inside
+  LargeVector<int> border; ///< vertices of the sides beyond which the surface does not go on, each once or more
 };
 
 /** \brief Turn the loops of the active cells into triangles over the placed vertices, block after block. */
@@ -32,10 +32,10 @@ meshCells (const SparseGrid &grid, int threads, const SurfaceVertices &vertices)
 
 /** \brief Triangulate one loop without new vertices; false where it needs one. */
 bool
-triangulateCell (const CellLoop &loop, const SurfaceVertices &vertices, std::vector<std::array<int, 3>> &triangles);
+triangulateCell (const CellLoop &loop, const SurfaceVertices &vertices, LargeVector<std::array<int, 3>> &triangles);
 
 /** \brief Add the triangles between a loop and the vertex \a center in its middle. */
 void
-addFan (const std::vector<int> &ring, int center, std::vector<std::array<int, 3>> &triangles);
+addFan (const std::vector<int> &ring, int center, LargeVector<std::array<int, 3>> &triangles);
 
 } // namespace erkpa

@@ -24,8 +24,8 @@ using Triangle = std::array<int, 3>;
 class CreaseBuilder
 {
 public:
-  CreaseBuilder (double voxel, const std::vector<CellLoop> &loops, const std::vector<MeshedLoop> &meshed, int threads,
-                 std::vector<Triangle> &triangles, SurfaceVertices &vertices)
+  CreaseBuilder (double voxel, const LargeVector<CellLoop> &loops, const std::vector<MeshedLoop> &meshed, int threads,
+                 LargeVector<Triangle> &triangles, SurfaceVertices &vertices)
       : voxel_ (voxel), threads_ (threads), loops_ (loops), meshed_ (meshed), triangles_ (triangles),
         vertices_ (vertices), before_loops_ (triangles.size ()), links_ (loops.size ())
   {
@@ -203,7 +203,7 @@ private:
     with_middle_.clear ();
     constexpr std::size_t STRETCH = 256;
     std::vector<std::size_t> counts (loops_.size (), 0);
-    std::vector<std::vector<Triangle>> parts ((loops_.size () + STRETCH - 1) / STRETCH);
+    std::vector<LargeVector<Triangle>> parts ((loops_.size () + STRETCH - 1) / STRETCH);
     parallelFor (
         parts.size (), threads_, [] { return 0; },
         [&] (int, std::size_t p)
@@ -218,7 +218,7 @@ private:
             counts[i] = parts[p].size () - before;
           }
         });
-    for (const std::vector<Triangle> &part : parts)
+    for (const LargeVector<Triangle> &part : parts)
       triangles_.insert (triangles_.end (), part.begin (), part.end ());
     for (std::size_t i = 0; i < loops_.size (); ++i)
     {
@@ -257,7 +257,7 @@ private:
   }
 
   void
-  addCreaseFan (std::size_t loop, std::vector<Triangle> &triangles) const
+  addCreaseFan (std::size_t loop, LargeVector<Triangle> &triangles) const
   {
     const std::vector<int> &ring = loops_[loop].ring;
     const int c = links_.center (loop);
@@ -311,9 +311,9 @@ private:
 
   double voxel_;
   int threads_;
-  const std::vector<CellLoop> &loops_;
+  const LargeVector<CellLoop> &loops_;
   const std::vector<MeshedLoop> &meshed_;
-  std::vector<Triangle> &triangles_;
+  LargeVector<Triangle> &triangles_;
   SurfaceVertices &vertices_;
   const std::size_t before_loops_; // triangles
   std::vector<int> owners_;        // per triangle of loops the one whose crease vertex it has; -1 for none
@@ -324,8 +324,8 @@ private:
 } // namespace
 
 std::vector<VertexPair>
-addCreases (double voxel, const std::vector<CellLoop> &loops, const std::vector<MeshedLoop> &meshed, int threads,
-            std::vector<Triangle> &triangles, SurfaceVertices &vertices)
+addCreases (double voxel, const LargeVector<CellLoop> &loops, const std::vector<MeshedLoop> &meshed, int threads,
+            LargeVector<Triangle> &triangles, SurfaceVertices &vertices)
 {
   return CreaseBuilder (voxel, loops, meshed, threads, triangles, vertices).build ();
 }

@@ -20,7 +20,7 @@ namespace erkpa
  * \return the edges of the mesh that run along creases, sorted
  */
 std::vector<VertexPair>
-addCreases (double voxel, const std::vector<CellLoop> &loops, const std::vector<MeshedLoop> &meshed, int threads,
-            std::vector<std::array<int, 3>> &triangles, SurfaceVertices &vertices);
+addCreases (double voxel, const LargeVector<CellLoop> &loops, const std::vector<MeshedLoop> &meshed, int threads,
+            LargeVector<std::array<int, 3>> &triangles, SurfaceVertices &vertices);
 
 } // namespace erkpa

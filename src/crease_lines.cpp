@@ -15,7 +15,7 @@ namespace
 
 /** \brief Those of the edges that the triangles have, sorted. */
 std::vector<VertexPair>
-keepEdges (const std::vector<VertexPair> &edges, const std::vector<std::array<int, 3>> &triangles,
+keepEdges (const std::vector<VertexPair> &edges, const LargeVector<std::array<int, 3>> &triangles,
            std::size_t vertex_count)
 {
   std::vector<char> on_crease (vertex_count, 0);
@@ -130,7 +130,7 @@ private:
 
 std::vector<Crease>
 traceCreases (const ImplicitField &field, const PolygonizerOptions &options, const std::vector<VertexPair> &edges,
-              const std::vector<std::array<int, 3>> &triangles, const SurfaceVertices &vertices)
+              const LargeVector<std::array<int, 3>> &triangles, const SurfaceVertices &vertices)
 {
   if (edges.empty ())
     return {};

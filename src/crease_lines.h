@@ -16,6 +16,6 @@ namespace erkpa
  */
 std::vector<Crease>
 traceCreases (const ImplicitField &field, const PolygonizerOptions &options, const std::vector<VertexPair> &edges,
-              const std::vector<std::array<int, 3>> &triangles, const SurfaceVertices &vertices);
+              const LargeVector<std::array<int, 3>> &triangles, const SurfaceVertices &vertices);
 
 } // namespace erkpa

@@ -114,7 +114,7 @@ EdgeJudge::entangles (int h) const
                  });
   if (is_free)
     return false;
-  std::vector<Triangle> moved;
+  LargeVector<Triangle> moved;
   edges_.around (from,
                  [&] (int side)
                  {

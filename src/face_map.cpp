@@ -121,7 +121,7 @@ void
 FaceMap::findJoints (const OrientedPoints &points, const NeighborSearch &search, double spacing, int threads)
 {
   constexpr std::size_t STRETCH = 256;
-  auto joints = parallelCollect<Meeting> (
+  auto joints = parallelCollect<std::vector<Meeting>> (
       points.size (), threads,
       [&] (std::size_t first, std::size_t last, std::vector<Meeting> &found)
       {

@@ -252,7 +252,7 @@ segmentFaces (const OrientedPoints &points, const NeighborSearch &search, const 
       }
   };
   constexpr std::size_t STRETCH = 512;
-  result.separations = parallelCollect<Separation> (points.size (), threads, list_separations, STRETCH);
+  result.separations = parallelCollect<std::vector<Separation>> (points.size (), threads, list_separations, STRETCH);
   return result;
 }
 

@@ -236,7 +236,7 @@ private:
 } // namespace
 
 std::vector<MeshedLoop>
-meshLoops (const ImplicitField &field, const PolygonizerOptions &options, const std::vector<CellLoop> &loops,
+meshLoops (const ImplicitField &field, const PolygonizerOptions &options, const LargeVector<CellLoop> &loops,
            double voxel, bool has_border, const SurfaceVertices &vertices, PolygonizerReport &report)
 {
   std::vector<MeshedLoop> meshed (loops.size ());

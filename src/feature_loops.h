@@ -42,7 +42,7 @@ struct MeshedLoop
  * \param[in] has_border whether the surface has one: only then border offsets are found
  */
 std::vector<MeshedLoop>
-meshLoops (const ImplicitField &field, const PolygonizerOptions &options, const std::vector<CellLoop> &loops,
+meshLoops (const ImplicitField &field, const PolygonizerOptions &options, const LargeVector<CellLoop> &loops,
            double voxel, bool has_border, const SurfaceVertices &vertices, PolygonizerReport &report);
 
 } // namespace erkpa

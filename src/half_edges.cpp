@@ -12,7 +12,7 @@ namespace erkpa
 
 using Triangle = std::array<int, 3>;
 
-HalfEdges::HalfEdges (std::vector<Triangle> &&triangles, std::size_t vertex_count, int threads)
+HalfEdges::HalfEdges (LargeVector<Triangle> &&triangles, std::size_t vertex_count, int threads)
     : triangles_ (std::move (triangles)), corners_ (triangles_.empty () ? nullptr : triangles_.front ().data ()),
       twins_ (3 * triangles_.size (), -1), outgoing_ (vertex_count, -1), places_ (vertex_count, Place::INSIDE)
 {
@@ -48,14 +48,14 @@ HalfEdges::findTwins (int threads)
 void
 HalfEdges::findOutgoing (int threads)
 {
-  const std::vector<int> open =
-      parallelCollect<int> (twins_.size (), threads,
-                            [this] (std::size_t first, std::size_t last, std::vector<int> &found)
-                            {
-                              for (std::size_t h = first; h < last; ++h)
-                                if (twins_[h] < 0)
-                                  found.push_back (static_cast<int> (h));
-                            });
+  const LargeVector<int> open =
+      parallelCollect<LargeVector<int>> (twins_.size (), threads,
+                                         [this] (std::size_t first, std::size_t last, LargeVector<int> &found)
+                                         {
+                                           for (std::size_t h = first; h < last; ++h)
+                                             if (twins_[h] < 0)
+                                               found.push_back (static_cast<int> (h));
+                                         });
   for (int h = static_cast<int> (twins_.size ()) - 1; h >= 0; --h)
     setOutgoing (start (h), h);
   for (const int h : open)
@@ -181,7 +181,7 @@ HalfEdges::flip (int h)
   }
 }
 
-std::vector<Triangle>
+LargeVector<Triangle>
 HalfEdges::release ()
 {
   triangles_.erase (

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <erkpa/large_pages.h>
+
 #include <array>
 #include <cstddef>
 #include <vector>
@@ -23,7 +25,7 @@ public:
     TANGLED ///< several borders meet in the vertex
   };
 
-  HalfEdges (std::vector<std::array<int, 3>> &&triangles, std::size_t vertex_count, int threads);
+  HalfEdges (LargeVector<std::array<int, 3>> &&triangles, std::size_t vertex_count, int threads);
 
   HalfEdges (const HalfEdges &) = delete;
   HalfEdges &
@@ -134,7 +136,7 @@ public:
   }
 
   /** \brief Give up the triangles that are left, in the order of their half-edges. */
-  std::vector<std::array<int, 3>>
+  LargeVector<std::array<int, 3>>
   release ();
 
 private:
@@ -165,12 +167,12 @@ private:
   void
   findOutgoing (int threads);
 
-  std::vector<std::array<int, 3>> triangles_; // vertices -1 where a triangle has vanished
+  LargeVector<std::array<int, 3>> triangles_; // vertices -1 where a triangle has vanished
   int *corners_;                              // of the triangles, one after the other
-  std::vector<int> twins_;
-  std::vector<char> creases_; // per half-edge; empty where there are none
-  std::vector<int> outgoing_; // per vertex a half-edge that starts there: on the border the first one; -1 if none does
-  std::vector<Place> places_;
+  LargeVector<int> twins_;
+  LargeVector<char> creases_; // per half-edge; empty where there are none
+  LargeVector<int> outgoing_; // per vertex a half-edge that starts there: on the border the first one; -1 if none does
+  LargeVector<Place> places_;
 };
 
 } // namespace erkpa

@@ -64,7 +64,7 @@ checkOptions (const PolygonizerOptions &options)
 
 /** \brief Put a vertex in the middle of each loop, with triangles around it. */
 void
-meshCentered (const std::vector<CellLoop> &loops, std::vector<Triangle> &triangles, SurfaceVertices &vertices)
+meshCentered (const LargeVector<CellLoop> &loops, LargeVector<Triangle> &triangles, SurfaceVertices &vertices)
 {
   for (const CellLoop &loop : loops)
   {
@@ -90,17 +90,17 @@ noSurface (const ImplicitField &field, double voxel, std::size_t dropped)
 
 /** \brief Gives vertices where the field has no gradient the mean direction of their triangles. */
 void
-fillNormals (const std::vector<Triangle> &triangles, int threads, SurfaceVertices &vertices)
+fillNormals (const LargeVector<Triangle> &triangles, int threads, SurfaceVertices &vertices)
 {
   const auto is_missing = [&vertices] (int v) { return vertices.normals[static_cast<std::size_t> (v)].isZero (0.0); };
-  const std::vector<int> missing =
-      parallelCollect<int> (vertices.normals.size (), threads,
-                            [&] (std::size_t first, std::size_t last, std::vector<int> &found)
-                            {
-                              for (int v = static_cast<int> (first); v < static_cast<int> (last); ++v)
-                                if (is_missing (v))
-                                  found.push_back (v);
-                            });
+  const LargeVector<int> missing =
+      parallelCollect<LargeVector<int>> (vertices.normals.size (), threads,
+                                         [&] (std::size_t first, std::size_t last, LargeVector<int> &found)
+                                         {
+                                           for (int v = static_cast<int> (first); v < static_cast<int> (last); ++v)
+                                             if (is_missing (v))
+                                               found.push_back (v);
+                                         });
   if (missing.empty ())
     return;
   std::vector<Eigen::Vector3d> sums (missing.size (), Eigen::Vector3d::Zero ());
@@ -118,10 +118,10 @@ fillNormals (const std::vector<Triangle> &triangles, int threads, SurfaceVertice
 }
 
 /** \brief The vertices that triangles use, in their order. */
-std::vector<int>
-findUsed (const std::vector<Triangle> &triangles, std::size_t vertex_count, int threads)
+LargeVector<int>
+findUsed (const LargeVector<Triangle> &triangles, std::size_t vertex_count, int threads)
 {
-  std::vector<std::atomic<char>> is_used (vertex_count);
+  LargeVector<std::atomic<char>> is_used (vertex_count);
   parallelRanges (triangles.size (), threads,
                   [&] (std::size_t first, std::size_t last)
                   {
@@ -129,21 +129,21 @@ findUsed (const std::vector<Triangle> &triangles, std::size_t vertex_count, int 
                       for (const int v : triangles[t])
                         is_used[static_cast<std::size_t> (v)].store (1, std::memory_order_relaxed);
                   });
-  return parallelCollect<int> (vertex_count, threads,
-                               [&] (std::size_t first, std::size_t last, std::vector<int> &used)
-                               {
-                                 for (std::size_t v = first; v < last; ++v)
-                                   if (is_used[v].load (std::memory_order_relaxed))
-                                     used.push_back (static_cast<int> (v));
-                               });
+  return parallelCollect<LargeVector<int>> (vertex_count, threads,
+                                            [&] (std::size_t first, std::size_t last, LargeVector<int> &used)
+                                            {
+                                              for (std::size_t v = first; v < last; ++v)
+                                                if (is_used[v].load (std::memory_order_relaxed))
+                                                  used.push_back (static_cast<int> (v));
+                                            });
 }
 
 /** \brief The mesh of the vertices in use, in the frame of the cloud. */
 TriangleMesh
 toInputFrame (const OrientedPoints &points, int threads, const SurfaceVertices &vertices,
-              std::vector<Triangle> &triangles, std::vector<Crease> creases)
+              LargeVector<Triangle> &triangles, std::vector<Crease> creases)
 {
-  const std::vector<int> used = findUsed (triangles, vertices.positions.size (), threads);
+  const LargeVector<int> used = findUsed (triangles, vertices.positions.size (), threads);
   const auto channels = static_cast<std::size_t> (points.channels);
   TriangleMesh mesh;
   mesh.creases = std::move (creases);
@@ -151,7 +151,7 @@ toInputFrame (const OrientedPoints &points, int threads, const SurfaceVertices &
   mesh.vertices.resize (used.size ());
   mesh.normals.resize (used.size ());
   mesh.attributes.resize (used.size () * channels);
-  std::vector<int> renumbered (vertices.positions.size ());
+  LargeVector<int> renumbered (vertices.positions.size ());
   parallelRanges (used.size (), threads,
                   [&] (std::size_t first, std::size_t last)
                   {
@@ -191,8 +191,8 @@ followSurface (SurfaceTracker &tracker, SparseGrid &grid, PolygonizerReport &rep
 
 /** \brief The loops that creases run through, as triangles with their vertices and edges on these. */
 std::vector<VertexPair>
-meshCreases (const ImplicitField &field, const PolygonizerOptions &options, const std::vector<CellLoop> &mixed_loops,
-             bool has_border, std::vector<Triangle> &triangles, SurfaceVertices &vertices, PolygonizerReport &report)
+meshCreases (const ImplicitField &field, const PolygonizerOptions &options, const LargeVector<CellLoop> &mixed_loops,
+             bool has_border, LargeVector<Triangle> &triangles, SurfaceVertices &vertices, PolygonizerReport &report)
 {
   const StageClock clock (report.seconds_creases);
   const std::vector<MeshedLoop> loops =
@@ -205,7 +205,7 @@ meshCreases (const ImplicitField &field, const PolygonizerOptions &options, cons
  * \param[out] creases edges of the mesh
  * \return the triangles; none where no data support a piece of surface
  */
-std::vector<Triangle>
+LargeVector<Triangle>
 meshSurface (const ImplicitField &field, const PolygonizerOptions &options, const SparseGrid &grid,
              const SurfaceTracker &tracker, SurfaceVertices &vertices, std::vector<VertexPair> &creases,
              PolygonizerReport &report)
@@ -214,7 +214,7 @@ meshSurface (const ImplicitField &field, const PolygonizerOptions &options, cons
   const double voxel = report.voxel_size;
   CellMesh cell_mesh = meshCells (grid, options.threads, vertices);
   const std::size_t at_middles = vertices.positions.size ();
-  std::vector<Triangle> triangles = std::move (cell_mesh.triangles);
+  LargeVector<Triangle> triangles = std::move (cell_mesh.triangles);
   meshCentered (cell_mesh.centered_loops, triangles, vertices);
   projectVertices (field, options, at_middles, 0.3 * voxel, vertices, report);
   creases =
@@ -230,9 +230,9 @@ meshSurface (const ImplicitField &field, const PolygonizerOptions &options, cons
     return triangles;
   splitFans (cell_mesh.border, options.threads, triangles, vertices);
   fillNormals (triangles, options.threads, vertices);
-  vertices.border_offsets = std::vector<double> (); // has done its work, as have the next two
-  vertices.faces = std::vector<int> ();
-  vertices.side_keys = std::vector<std::uint64_t> ();
+  vertices.border_offsets = LargeVector<double> (); // has done its work, as have the next two
+  vertices.faces = LargeVector<int> ();
+  vertices.side_keys = LargeVector<std::uint64_t> ();
   vertices.has_sides = false;
   return triangles;
 }
@@ -242,7 +242,7 @@ meshSurface (const ImplicitField &field, const PolygonizerOptions &options, cons
  */
 Outcome
 meshField (const ImplicitField &field, const PolygonizerOptions &options, SurfaceVertices &vertices,
-           std::vector<VertexPair> &creases, std::vector<Triangle> &triangles, PolygonizerReport &report,
+           std::vector<VertexPair> &creases, LargeVector<Triangle> &triangles, PolygonizerReport &report,
            const ProgressCallback &progress)
 {
   const double voxel = report.voxel_size;
@@ -293,7 +293,7 @@ polygonize (const ImplicitField &field, const PolygonizerOptions &options, Trian
 
   SurfaceVertices vertices;
   std::vector<VertexPair> creases;
-  std::vector<Triangle> triangles;
+  LargeVector<Triangle> triangles;
   outcome = meshField (field, options, vertices, creases, triangles, report, progress);
   if (!outcome.ok ())
     return outcome;

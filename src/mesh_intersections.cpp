@@ -19,7 +19,7 @@ namespace
 
 using Eigen::Vector3d;
 using Triangle = std::array<int, 3>;
-using Positions = std::vector<Vector3d>;
+using Positions = LargeVector<Vector3d>;
 
 const Vector3d &
 at (const Positions &positions, int vertex)
@@ -91,7 +91,7 @@ struct Box
 class CellTable
 {
 public:
-  CellTable (const Positions &positions, const std::vector<Triangle> &triangles, const std::vector<int> &which,
+  CellTable (const Positions &positions, const LargeVector<Triangle> &triangles, const std::vector<int> &which,
              double cell)
       : per_cell_ (1.0 / cell)
   {
@@ -163,7 +163,7 @@ passThrough (const Positions &positions, const Triangle &one, const Triangle &ot
 }
 
 std::vector<std::pair<int, int>>
-findIntersections (const Positions &positions, const std::vector<Triangle> &triangles, const std::vector<int> &suspects,
+findIntersections (const Positions &positions, const LargeVector<Triangle> &triangles, const std::vector<int> &suspects,
                    double cell, int threads)
 {
   std::vector<char> is_suspect (triangles.size (), 0);
@@ -184,7 +184,7 @@ findIntersections (const Positions &positions, const std::vector<Triangle> &tria
                  });
   };
   constexpr std::size_t STRETCH = 2048;
-  Pairs pairs = parallelCollect<std::pair<int, int>> (
+  Pairs pairs = parallelCollect<std::vector<std::pair<int, int>>> (
       triangles.size (), threads,
       [&] (std::size_t first, std::size_t last, Pairs &part)
       {

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <erkpa/large_pages.h>
+
 #include <Eigen/Core>
 
 #include <array>
@@ -15,7 +17,7 @@ namespace erkpa
  * Those that share an edge never do: they fold at most. Touching does not count.
  */
 bool
-passThrough (const std::vector<Eigen::Vector3d> &positions, const std::array<int, 3> &one,
+passThrough (const LargeVector<Eigen::Vector3d> &positions, const std::array<int, 3> &one,
              const std::array<int, 3> &other);
 
 /** \brief The pairs of triangles that pass through each other, of which the first is one of the \a suspects.
@@ -24,7 +26,7 @@ passThrough (const std::vector<Eigen::Vector3d> &positions, const std::array<int
  * \return places in \a triangles; pairs of two suspects once, sorted
  */
 std::vector<std::pair<int, int>>
-findIntersections (const std::vector<Eigen::Vector3d> &positions, const std::vector<std::array<int, 3>> &triangles,
+findIntersections (const LargeVector<Eigen::Vector3d> &positions, const LargeVector<std::array<int, 3>> &triangles,
                    const std::vector<int> &suspects, double cell, int threads);
 
 } // namespace erkpa

@@ -3,6 +3,8 @@
 
 #include "parallel_collect.h"
 
+#include <erkpa/large_pages.h>
+
 #include <Eigen/Core>
 
 #include <algorithm>
@@ -28,7 +30,7 @@ class MeshRegions
 {
 public:
   /** \param[in] side length of a region */
-  MeshRegions (double side, const std::vector<Eigen::Vector3d> &positions, int threads) : threads_ (threads)
+  MeshRegions (double side, const LargeVector<Eigen::Vector3d> &positions, int threads) : threads_ (threads)
   {
     for (std::size_t layout = 0; layout < LAYOUTS; ++layout)
       regions_[layout].resize (positions.size ());

@@ -34,8 +34,8 @@ guessSpacing (const std::vector<Eigen::Vector3f> &positions)
 NodeTable::NodeTable (const OrientedPoints &points, std::shared_ptr<const PointGrid> point_grid, int threads)
     : grid (std::move (point_grid))
 {
-  const std::vector<std::uint32_t> &index = grid->index ();
-  for (std::vector<float> &component : normals)
+  const LargeVector<std::uint32_t> &index = grid->index ();
+  for (LargeVector<float> &component : normals)
     component.resize (index.size ());
   confidences.resize (points.confidences.empty () ? 0 : index.size ());
   parallelRanges (index.size (), threads,

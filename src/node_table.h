@@ -19,8 +19,8 @@ struct NodeTable
   NodeTable (const OrientedPoints &points, std::shared_ptr<const PointGrid> grid, int threads);
 
   std::shared_ptr<const PointGrid> grid;
-  std::array<std::vector<float>, 3> normals;
-  std::vector<float> confidences; ///< empty: all one
+  std::array<LargeVector<float>, 3> normals;
+  LargeVector<float> confidences; ///< empty: all one
 };
 
 /** \brief A grid whose cells are about as large as the supports will be; \a spacing is measured by the way. */

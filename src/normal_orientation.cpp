@@ -93,7 +93,7 @@ linkNeighbors (const OrientedPoints &points, const NeighborSearch &search, const
     }
   };
   constexpr std::size_t STRETCH = 512;
-  return parallelCollect<SignedLink> (
+  return parallelCollect<std::vector<SignedLink>> (
       points.size (), threads,
       [&] (std::size_t first, std::size_t last, std::vector<SignedLink> &links)
       {

@@ -146,13 +146,14 @@ public:
   std::vector<SignedLink>
   find (int threads) const
   {
-    return parallelCollect<SignedLink> (size_, threads,
-                                        [this] (std::size_t first, std::size_t last, std::vector<SignedLink> &found)
-                                        {
-                                          for (std::size_t i = first; i < last; ++i)
-                                            if (std::abs (links_[i].weight) >= SURE && !isContradicted (links_[i]))
-                                              found.push_back (links_[i]);
-                                        });
+    return parallelCollect<std::vector<SignedLink>> (
+        size_, threads,
+        [this] (std::size_t first, std::size_t last, std::vector<SignedLink> &found)
+        {
+          for (std::size_t i = first; i < last; ++i)
+            if (std::abs (links_[i].weight) >= SURE && !isContradicted (links_[i]))
+              found.push_back (links_[i]);
+        });
   }
 
 private:

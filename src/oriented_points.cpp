@@ -55,14 +55,15 @@ template <typename TestT>
 std::size_t
 dropIf (std::vector<int> &chosen, int threads, TestT is_bad)
 {
-  std::vector<int> kept = parallelCollect<int> (chosen.size (), threads,
-                                                [&] (std::size_t first, std::size_t last, std::vector<int> &part)
-                                                {
-                                                  part.reserve (last - first);
-                                                  for (std::size_t rank = first; rank < last; ++rank)
-                                                    if (!is_bad (chosen[rank]))
-                                                      part.push_back (chosen[rank]);
-                                                });
+  std::vector<int> kept =
+      parallelCollect<std::vector<int>> (chosen.size (), threads,
+                                         [&] (std::size_t first, std::size_t last, std::vector<int> &part)
+                                         {
+                                           part.reserve (last - first);
+                                           for (std::size_t rank = first; rank < last; ++rank)
+                                             if (!is_bad (chosen[rank]))
+                                               part.push_back (chosen[rank]);
+                                         });
   const std::size_t count = chosen.size () - kept.size ();
   chosen.swap (kept);
   return count;

@@ -107,8 +107,8 @@ void
 PointGrid::sortIntoCells (const std::vector<Eigen::Vector3f> &positions, int threads)
 {
   const std::size_t n = positions.size ();
-  std::vector<std::uint32_t> bricks (n);
-  std::vector<std::uint16_t> cells (n);
+  LargeVector<std::uint32_t> bricks (n);
+  LargeVector<std::uint16_t> cells (n);
   parallelRanges (n, threads,
                   [&] (std::size_t first, std::size_t last)
                   {
@@ -139,7 +139,7 @@ PointGrid::sortIntoCells (const std::vector<Eigen::Vector3f> &positions, int thr
   for (std::size_t c = starts_.size () - 1; c > 0; --c) // each start has moved to the next one
     starts_[c] = starts_[c - 1];
   starts_[0] = 0;
-  for (std::vector<float> &coordinates : coordinates_)
+  for (LargeVector<float> &coordinates : coordinates_)
     coordinates.resize (n);
   parallelRanges (n, threads,
                   [&] (std::size_t first, std::size_t last)

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <erkpa/large_pages.h>
 #include <erkpa/neighbor_search.h>
 
 #include <Eigen/Core>
@@ -45,13 +46,13 @@ public:
   }
 
   /** \brief The points in the order of the grid: place -> index among those given, and coordinates. */
-  const std::vector<std::uint32_t> &
+  const LargeVector<std::uint32_t> &
   index () const
   {
     return index_;
   }
 
-  const std::vector<float> &
+  const LargeVector<float> &
   coordinates (int axis) const
   {
     return coordinates_[static_cast<std::size_t> (axis)];
@@ -147,10 +148,10 @@ private:
   double cell_ = 1.0, inverse_ = 1.0;
   Eigen::Array3d low_ = Eigen::Array3d::Zero ();
   Cell cells_{}, bricks_{};
-  std::vector<std::uint32_t> slots_;  // per brick
-  std::vector<std::uint32_t> starts_; // per cell of the bricks that have points
-  std::vector<std::uint32_t> index_;
-  std::array<std::vector<float>, 3> coordinates_;
+  LargeVector<std::uint32_t> slots_;  // per brick
+  LargeVector<std::uint32_t> starts_; // per cell of the bricks that have points
+  LargeVector<std::uint32_t> index_;
+  std::array<LargeVector<float>, 3> coordinates_;
 };
 
 /** \brief A search by a grid: quick to make and to ask near the points. */

@@ -16,7 +16,7 @@ using Triangle = std::array<int, 3>;
 /** \brief Calls visit (smaller vertex, side) for the sides of some vertices, the last first. */
 template <typename VisitT>
 void
-visitSides (const std::vector<Triangle> &triangles, int first_vertex, int end_vertex, VisitT visit)
+visitSides (const LargeVector<Triangle> &triangles, int first_vertex, int end_vertex, VisitT visit)
 {
   const auto count = static_cast<unsigned> (end_vertex - first_vertex);
   for (std::size_t t = triangles.size (); t-- > 0;)
@@ -32,7 +32,7 @@ visitSides (const std::vector<Triangle> &triangles, int first_vertex, int end_ve
 
 } // namespace
 
-SideTable::SideTable (const std::vector<Triangle> &triangles, std::size_t vertex_count, int threads)
+SideTable::SideTable (const LargeVector<Triangle> &triangles, std::size_t vertex_count, int threads)
     : firsts_ (vertex_count + 1, 0), sides_ (3 * triangles.size ())
 {
   // Each thread looks at all triangles for the sides of its own vertices.

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <erkpa/large_pages.h>
+
 #include <array>
 #include <cstddef>
 #include <vector>
@@ -15,7 +17,7 @@ namespace erkpa
 class SideTable
 {
 public:
-  SideTable (const std::vector<std::array<int, 3>> &triangles, std::size_t vertex_count, int threads);
+  SideTable (const LargeVector<std::array<int, 3>> &triangles, std::size_t vertex_count, int threads);
 
   /** \brief The sides whose smaller vertex is \a v, in their order. */
   const int *
@@ -31,8 +33,8 @@ public:
   }
 
 private:
-  std::vector<int> firsts_; // per vertex: where its sides begin
-  std::vector<int> sides_;
+  LargeVector<int> firsts_; // per vertex: where its sides begin
+  LargeVector<int> sides_;
 };
 
 } // namespace erkpa

@@ -29,7 +29,7 @@ constexpr double LEAST_GAIN = 0.05;       // by which a flip must widen the smal
 class SliverRemover
 {
 public:
-  SliverRemover (double voxel, int threads, const std::vector<VertexPair> &creases, std::vector<Triangle> &triangles,
+  SliverRemover (double voxel, int threads, const std::vector<VertexPair> &creases, LargeVector<Triangle> &triangles,
                  const SurfaceVertices &vertices)
       : short_ (square (SHORT * voxel)), longest_collapsed_ (square (LONGEST_COLLAPSED * voxel)), threads_ (threads),
         edges_ (std::move (triangles), vertices.positions.size (), threads), judge_ (voxel, creases, vertices, edges_),
@@ -40,14 +40,15 @@ public:
   void
   run ()
   {
-    queue_ = parallelCollect<ShortEdge> (3 * edges_.triangleCount (), threads_,
-                                         [this] (std::size_t first, std::size_t last, std::vector<ShortEdge> &found)
-                                         {
-                                           for (std::size_t h = first; h < last; ++h)
-                                             queueIfShort (static_cast<int> (h), found);
-                                         });
+    queue_ = parallelCollect<LargeVector<ShortEdge>> (
+        3 * edges_.triangleCount (), threads_,
+        [this] (std::size_t first, std::size_t last, LargeVector<ShortEdge> &found)
+        {
+          for (std::size_t h = first; h < last; ++h)
+            queueIfShort (static_cast<int> (h), found);
+        });
     collapseQueued ();
-    const std::vector<int> narrow = findNarrow ();
+    const LargeVector<int> narrow = findNarrow ();
     constexpr int PASSES = 4;
     bool changed = true;
     for (pass_ = 1; pass_ <= PASSES && changed; ++pass_)
@@ -58,7 +59,7 @@ public:
   }
 
   /** \brief The triangles that are left; the creases become those that are left. */
-  std::vector<Triangle>
+  LargeVector<Triangle>
   finish (std::vector<VertexPair> &creases)
   {
     if (!creases.empty ())
@@ -78,7 +79,7 @@ private:
   /** \brief What one thread finds while it changes the mesh. */
   struct Worker
   {
-    std::vector<ShortEdge> queue; // edges that have become short
+    LargeVector<ShortEdge> queue; // edges that have become short
     bool changed = false;
   };
 
@@ -89,7 +90,7 @@ private:
   }
 
   void
-  queueIfShort (int h, std::vector<ShortEdge> &queue) const
+  queueIfShort (int h, LargeVector<ShortEdge> &queue) const
   {
     if (edges_.start (h) > edges_.end (h))
       return; // its twin is queued
@@ -141,7 +142,7 @@ private:
     constexpr int PASSES = 4;
     for (int pass = 0; pass < PASSES && !queue_.empty (); ++pass)
     {
-      std::vector<ShortEdge> queue;
+      LargeVector<ShortEdge> queue;
       queue.swap (queue_);
       runAll (
           queue.size (), 1, [&] (std::size_t job) { return queue[job].second; },
@@ -152,16 +153,16 @@ private:
     queue_.clear ();
   }
 
-  std::vector<int>
+  LargeVector<int>
   findNarrow () const
   {
-    return parallelCollect<int> (edges_.triangleCount (), threads_,
-                                 [this] (std::size_t first, std::size_t last, std::vector<int> &found)
-                                 {
-                                   for (std::size_t t = first; t < last; ++t)
-                                     if (isNarrow (static_cast<int> (3 * t)))
-                                       found.push_back (static_cast<int> (3 * t));
-                                 });
+    return parallelCollect<LargeVector<int>> (edges_.triangleCount (), threads_,
+                                              [this] (std::size_t first, std::size_t last, LargeVector<int> &found)
+                                              {
+                                                for (std::size_t t = first; t < last; ++t)
+                                                  if (isNarrow (static_cast<int> (3 * t)))
+                                                    found.push_back (static_cast<int> (3 * t));
+                                              });
   }
 
   bool
@@ -172,7 +173,7 @@ private:
 
   /** \brief Mend the triangles around which anything has changed since the last pass. */
   bool
-  mendAll (const std::vector<int> &narrow)
+  mendAll (const LargeVector<int> &narrow)
   {
     const auto is_new = [this] (int h)
     {
@@ -261,7 +262,7 @@ private:
   HalfEdges edges_;
   EdgeJudge judge_;
   MeshRegions regions_;
-  std::vector<ShortEdge> queue_;
+  LargeVector<ShortEdge> queue_;
   signed char pass_ = 0;                // over the narrow triangles
   std::vector<signed char> changed_in_; // per vertex: the last pass in which its triangles changed
 };
@@ -269,7 +270,7 @@ private:
 } // namespace
 
 void
-removeSlivers (double voxel, std::vector<VertexPair> &creases, std::vector<Triangle> &triangles,
+removeSlivers (double voxel, std::vector<VertexPair> &creases, LargeVector<Triangle> &triangles,
                const SurfaceVertices &vertices, int threads)
 {
   SliverRemover remover (voxel, threads, creases, triangles, vertices);

@@ -20,7 +20,7 @@ namespace erkpa
  * any more stay \param[in] threads 0 = all processors; the mesh does not depend on it
  */
 void
-removeSlivers (double voxel, std::vector<VertexPair> &creases, std::vector<std::array<int, 3>> &triangles,
+removeSlivers (double voxel, std::vector<VertexPair> &creases, LargeVector<std::array<int, 3>> &triangles,
                const SurfaceVertices &vertices, int threads = 0);
 
 } // namespace erkpa

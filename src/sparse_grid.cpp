@@ -62,8 +62,9 @@ SparseGrid::placeBlock (const GridPoint &first)
   if (is_new)
   {
     if (static_cast<std::size_t> (block_count_) == CHUNK * chunks_.size ())
-      chunks_.emplace_back (new Chunk); // without zeros for the values
-    GridBlock &made = block (block_count_++);
+      chunks_.emplace_back ().reserve (CHUNK);
+    ++block_count_;
+    GridBlock &made = chunks_.back ().emplace_back ();
     made.first = first;
     made.above.fill (-1);
     made.below.fill (-1);

@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <erkpa/large_pages.h>
+
 #include <Eigen/Core>
 
 #include <array>
 #include <cstdint>
-#include <memory>
 #include <unordered_map>
 #include <vector>
 
@@ -147,13 +148,13 @@ public:
   GridBlock &
   block (int index)
   {
-    return (*chunks_[static_cast<std::size_t> (index) / CHUNK])[static_cast<std::size_t> (index) % CHUNK];
+    return chunks_[static_cast<std::size_t> (index) / CHUNK][static_cast<std::size_t> (index) % CHUNK];
   }
 
   const GridBlock &
   block (int index) const
   {
-    return (*chunks_[static_cast<std::size_t> (index) / CHUNK])[static_cast<std::size_t> (index) % CHUNK];
+    return chunks_[static_cast<std::size_t> (index) / CHUNK][static_cast<std::size_t> (index) % CHUNK];
   }
 
   int
@@ -218,8 +219,7 @@ public:
   }
 
 private:
-  static constexpr std::size_t CHUNK = 128;
-  using Chunk = std::array<GridBlock, CHUNK>; // blocks stay where they are when others are made
+  static constexpr std::size_t CHUNK = 4096; // blocks
 
   static std::uint64_t
   keyOf (const GridPoint &point);
@@ -233,7 +233,7 @@ private:
   Eigen::Vector3d origin_;
   double voxel_size_;
   int block_count_ = 0;
-  std::vector<std::unique_ptr<Chunk>> chunks_;
+  std::vector<LargeVector<GridBlock>> chunks_; // of a fixed size: blocks stay where they are when others are made
   std::unordered_map<std::uint64_t, int> index_;
 };
 

@@ -17,22 +17,22 @@ namespace
 using Triangle = std::array<int, 3>;
 
 /** \brief The first vertex of each piece that has triangles, sorted. */
-std::vector<int>
-findPieces (const std::vector<Triangle> &triangles, int threads, ConcurrentSets &sets)
+LargeVector<int>
+findPieces (const LargeVector<Triangle> &triangles, int threads, ConcurrentSets &sets)
 {
-  std::vector<int> pieces =
-      parallelCollect<int> (triangles.size (), threads,
-                            [&] (std::size_t first, std::size_t last, std::vector<int> &found)
-                            {
-                              for (std::size_t t = first; t < last; ++t)
-                              {
-                                const int piece = sets.find (triangles[t][0]);
-                                if (found.empty () || found.back () != piece)
-                                  found.push_back (piece);
-                              }
-                              std::sort (found.begin (), found.end ());
-                              found.erase (std::unique (found.begin (), found.end ()), found.end ());
-                            });
+  LargeVector<int> pieces =
+      parallelCollect<LargeVector<int>> (triangles.size (), threads,
+                                         [&] (std::size_t first, std::size_t last, LargeVector<int> &found)
+                                         {
+                                           for (std::size_t t = first; t < last; ++t)
+                                           {
+                                             const int piece = sets.find (triangles[t][0]);
+                                             if (found.empty () || found.back () != piece)
+                                               found.push_back (piece);
+                                           }
+                                           std::sort (found.begin (), found.end ());
+                                           found.erase (std::unique (found.begin (), found.end ()), found.end ());
+                                         });
   std::sort (pieces.begin (), pieces.end ());
   pieces.erase (std::unique (pieces.begin (), pieces.end ()), pieces.end ());
   return pieces;
@@ -42,7 +42,7 @@ findPieces (const std::vector<Triangle> &triangles, int threads, ConcurrentSets 
 class SupportCounter
 {
 public:
-  SupportCounter (const SparseGrid &grid, const SurfaceTracker &tracker, int min_points, const std::vector<int> &pieces,
+  SupportCounter (const SparseGrid &grid, const SurfaceTracker &tracker, int min_points, const LargeVector<int> &pieces,
                   ConcurrentSets &sets)
       : grid_ (grid), tracker_ (tracker), min_points_ (min_points), pieces_ (pieces), sets_ (sets),
         counts_ (pieces.size ())
@@ -94,7 +94,7 @@ private:
   const SparseGrid &grid_;
   const SurfaceTracker &tracker_;
   int min_points_;
-  const std::vector<int> &pieces_;
+  const LargeVector<int> &pieces_;
   ConcurrentSets &sets_;
   std::vector<std::atomic<int>> counts_; // nodes per piece
 };
@@ -103,7 +103,7 @@ private:
 
 std::size_t
 dropUnsupported (const SparseGrid &grid, const SurfaceTracker &tracker, int min_points, int threads,
-                 std::size_t vertex_count, std::vector<Triangle> &triangles)
+                 std::size_t vertex_count, LargeVector<Triangle> &triangles)
 {
   ConcurrentSets sets (vertex_count, threads);
   parallelRanges (triangles.size (), threads,
@@ -115,7 +115,7 @@ dropUnsupported (const SparseGrid &grid, const SurfaceTracker &tracker, int min_
                       sets.unite (triangles[t][1], triangles[t][2]);
                     }
                   });
-  const std::vector<int> pieces = findPieces (triangles, threads, sets);
+  const LargeVector<int> pieces = findPieces (triangles, threads, sets);
   SupportCounter counter (grid, tracker, min_points, pieces, sets);
   counter.count (threads);
   if (counter.allStay ())

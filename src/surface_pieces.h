@@ -3,6 +3,8 @@
 
 #include "surface_tracking.h"
 
+#include <erkpa/large_pages.h>
+
 #include <array>
 #include <cstddef>
 #include <vector>
@@ -17,6 +19,6 @@ namespace erkpa
  */
 std::size_t
 dropUnsupported (const SparseGrid &grid, const SurfaceTracker &tracker, int min_points, int threads,
-                 std::size_t vertex_count, std::vector<std::array<int, 3>> &triangles);
+                 std::size_t vertex_count, LargeVector<std::array<int, 3>> &triangles);
 
 } // namespace erkpa

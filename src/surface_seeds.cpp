@@ -30,9 +30,9 @@ SurfaceTracker::seedFromNodes ()
     GridPoint first;
     std::uint64_t cells;
   };
-  const auto found = parallelCollect<BlockCells> (
+  const auto found = parallelCollect<LargeVector<BlockCells>> (
       nodeCount (), options_.threads,
-      [this] (std::size_t first, std::size_t last, std::vector<BlockCells> &blocks)
+      [this] (std::size_t first, std::size_t last, LargeVector<BlockCells> &blocks)
       {
         for (std::size_t i = first; i < last; ++i)
         {
@@ -90,17 +90,17 @@ void
 SurfaceTracker::seedFromProjections ()
 {
   const auto &positions = field_.surfacePositions ();
-  const std::vector<std::uint32_t> &order = field_.nodeTable ().grid->index ();
-  const std::vector<std::uint32_t> away =
-      parallelCollect<std::uint32_t> (order.size (), options_.threads,
-                                      [&] (std::size_t first, std::size_t last, std::vector<std::uint32_t> &missing)
-                                      {
-                                        GridWindow window (grid_);
-                                        GridPoint found{};
-                                        for (std::size_t i = first; i < last; ++i)
-                                          if (!findCellNear (window, cellOfPlace (i), found))
-                                            missing.push_back (order[i]);
-                                      });
+  const LargeVector<std::uint32_t> &order = field_.nodeTable ().grid->index ();
+  const LargeVector<std::uint32_t> away = parallelCollect<LargeVector<std::uint32_t>> (
+      order.size (), options_.threads,
+      [&] (std::size_t first, std::size_t last, LargeVector<std::uint32_t> &missing)
+      {
+        GridWindow window (grid_);
+        GridPoint found{};
+        for (std::size_t i = first; i < last; ++i)
+          if (!findCellNear (window, cellOfPlace (i), found))
+            missing.push_back (order[i]);
+      });
   std::vector<Eigen::Vector3d> feet;
   feet.reserve (away.size ());
   for (const std::uint32_t i : away)

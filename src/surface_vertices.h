@@ -5,6 +5,7 @@
 #include "local_field.h"
 #include "sparse_grid.h"
 
+#include <erkpa/large_pages.h>
 #include <erkpa/marching_cubes.h>
 
 #include <cstdint>
@@ -16,14 +17,14 @@ namespace erkpa
 /** \brief The vertices of a surface in the making, in the local frame. */
 struct SurfaceVertices
 {
-  std::vector<Eigen::Vector3d> positions;
-  std::vector<Eigen::Vector3d> normals; ///< unit, ∇f/|∇f|
-  std::vector<double> border_offsets;   ///< see LocalSample::border_offset
+  LargeVector<Eigen::Vector3d> positions;
+  LargeVector<Eigen::Vector3d> normals; ///< unit, ∇f/|∇f|
+  LargeVector<double> border_offsets;   ///< see LocalSample::border_offset
   bool has_sides = false;               ///< whether there are sharp surfaces, and the next two are used
-  std::vector<int> faces;               ///< face whose piece of f the vertex is on; -1 where there are none
-  std::vector<std::uint64_t> side_keys; ///< see LocalField::sideKey ()
-  std::vector<float> attributes;        ///< channels values per vertex
-  std::vector<Eigen::Vector3d> found;   ///< of those on edges of the grid, where; thin walls move them from there
+  LargeVector<int> faces;               ///< face whose piece of f the vertex is on; -1 where there are none
+  LargeVector<std::uint64_t> side_keys; ///< see LocalField::sideKey ()
+  LargeVector<float> attributes;        ///< channels values per vertex
+  LargeVector<Eigen::Vector3d> found;   ///< of those on edges of the grid, where; thin walls move them from there
 
   /** \brief Values of attributes per vertex. */
   std::size_t

@@ -22,7 +22,7 @@ namespace
 class EdgeCounter
 {
 public:
-  EdgeCounter (const std::vector<std::array<int, 3>> &triangles, const SideTable &sides, ConcurrentSets &pieces)
+  EdgeCounter (const LargeVector<std::array<int, 3>> &triangles, const SideTable &sides, ConcurrentSets &pieces)
       : triangles_ (triangles), sides_ (sides), pieces_ (pieces)
   {
   }
@@ -56,7 +56,7 @@ private:
     return start != v ? start : triangle[(side + 1) % 3];
   }
 
-  const std::vector<std::array<int, 3>> &triangles_;
+  const LargeVector<std::array<int, 3>> &triangles_;
   const SideTable &sides_;
   ConcurrentSets &pieces_;
   std::vector<int> others_; // other ends of the edges of the vertex at hand

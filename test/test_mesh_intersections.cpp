@@ -11,7 +11,7 @@ namespace
 {
 
 /** \brief A triangle in the plane z = 0 with corners 0, 1, 2, and points to make others of. */
-const std::vector<Vector3d> POINTS{
+const erkpa::LargeVector<Vector3d> POINTS{
     {0.0, 0.0, 0.0}, {1.0, 0.0, 0.0}, {0.0, 1.0, 0.0}, {0.2, 0.2, -0.5}, {0.3, 0.2, 0.5},
     {0.2, 0.3, 0.5}, {0.2, 0.2, 0.1}, {1.2, 1.2, 0.5}, {1.2, 1.2, -0.5}, {1.0, 1.0, -0.2},
 };
@@ -36,7 +36,7 @@ TEST (MeshIntersections, OfTrianglesThatShareAVertexAreThoseBeyondIt)
 
 TEST (MeshIntersections, ComeWithASuspectFirstAndEachPairOnce)
 {
-  const std::vector<Triangle> triangles{FLAT, {3, 4, 5}, {7, 8, 9}};
+  const erkpa::LargeVector<Triangle> triangles{FLAT, {3, 4, 5}, {7, 8, 9}};
   for (const double cell : {0.05, 0.3, 10.0})
   {
     EXPECT_EQ (erkpa::findIntersections (POINTS, triangles, {1}, cell, 2), (Pairs{{1, 0}}));

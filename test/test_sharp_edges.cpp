@@ -432,7 +432,7 @@ TEST (SharpEdges, ThatAreAcuteMakeNoTrianglesThatPassThroughEachOther)
 {
   const SharpMesh result = automaticMeshOf (blade (12000));
   expectClosedBall (result);
-  std::vector<Vector3d> positions;
+  erkpa::LargeVector<Vector3d> positions;
   std::vector<int> all;
   for (const Eigen::Vector3f &v : result.mesh.vertices)
     positions.emplace_back (v.cast<double> ());

@@ -22,7 +22,7 @@ constexpr double VOXEL = 0.1;
 struct Patch
 {
   SurfaceVertices vertices;
-  std::vector<Triangle> triangles;
+  erkpa::LargeVector<Triangle> triangles;
   std::vector<VertexPair> creases;
 
   int
@@ -411,7 +411,7 @@ TEST (SliverRemoval, LeavesWellShapedMeshesAlone)
         position = {2.0 * row, 2.0 * column, 0.0};
         normal = Vector3d::UnitZ ();
       });
-  const std::vector<Triangle> before = patch.triangles;
+  const erkpa::LargeVector<Triangle> before = patch.triangles;
   patch.removeSlivers ();
   EXPECT_EQ (patch.triangles, before);
 }

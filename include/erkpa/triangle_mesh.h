@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <erkpa/large_pages.h>
+
 #include <Eigen/Core>
 
 #include <array>
@@ -20,11 +22,11 @@ struct Crease
 /** \brief Triangles over shared vertices, counter-clockwise seen from outside. */
 struct TriangleMesh
 {
-  std::vector<Eigen::Vector3f> vertices;     ///< positions
-  std::vector<Eigen::Vector3f> normals;      ///< unit normals ∇f/|∇f|, one per vertex
-  std::vector<std::array<int, 3>> triangles; ///< indices of vertices
+  LargeVector<Eigen::Vector3f> vertices;     ///< positions
+  LargeVector<Eigen::Vector3f> normals;      ///< unit normals ∇f/|∇f|, one per vertex
+  LargeVector<std::array<int, 3>> triangles; ///< indices of vertices
   int channels = 0;                          ///< attributes per vertex
-  std::vector<float> attributes;             ///< channels values per vertex, blended from the nodes
+  LargeVector<float> attributes;             ///< channels values per vertex, blended from the nodes
   std::vector<Crease> creases;               ///< the mesh edges that run along creases, as lines
 
   void

@@ -204,6 +204,7 @@ toBlob (const TriangleMesh &mesh, pcl::PCLPointCloud2 &blob)
   blob.height = 1;
   blob.row_step = blob.width * blob.point_step;
   blob.is_dense = 1;
+  reserveLarge (mesh.vertices.size () * sizeof (PointT), blob.data);
   blob.data.resize (mesh.vertices.size () * sizeof (PointT));
   for (std::size_t i = 0; i < mesh.vertices.size (); ++i)
   {
@@ -217,6 +218,7 @@ toBlob (const TriangleMesh &mesh, pcl::PCLPointCloud2 &blob)
 inline void
 toPolygons (const TriangleMesh &mesh, std::vector<pcl::Vertices> &polygons)
 {
+  reserveLarge (mesh.triangles.size (), polygons);
   polygons.resize (mesh.triangles.size ());
   for (std::size_t i = 0; i < mesh.triangles.size (); ++i)
     polygons[i].vertices.assign (mesh.triangles[i].begin (), mesh.triangles[i].end ());

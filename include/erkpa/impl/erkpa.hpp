@@ -103,9 +103,10 @@ ERKPA<PointNT>::reconstruct (pcl::PolygonMesh &output)
 {
   output = pcl::PolygonMesh ();
   TriangleMesh mesh;
-  const bool made = makeMesh (mesh);
+  if (!makeMesh (mesh))
+    mesh.clear ();
   const pcl::PCLHeader header = input_ ? input_->header : pcl::PCLHeader ();
-  toPolygonMesh (made ? mesh : TriangleMesh (), kindOfAttributes<PointNT> (), header, output);
+  toPolygonMesh (mesh, kindOfAttributes<PointNT> (), header, output);
 }
 
 template <typename PointNT>
