@@ -38,7 +38,7 @@ partsOfBlock (double support)
 GridPoint
 SparseGrid::cellOf (const Eigen::Vector3d &position) const
 {
-  const Eigen::Vector3d p = (position - origin_) / voxel_size_;
+  const Eigen::Vector3d p = (position - origin_) * cells_per_length_;
   const auto floored = [] (double v)
   {
     const int towards_zero = static_cast<int> (v);

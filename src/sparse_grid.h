@@ -38,6 +38,13 @@ cornerOffset (int corner)
   return {corner & 1, (corner >> 1) & 1, corner >> 2};
 }
 
+/** \brief Face 0..5 of a cell: that of the lower or of the higher coordinate along an axis. */
+inline std::size_t
+faceOf (int axis, int side)
+{
+  return 2 * static_cast<std::size_t> (axis) + static_cast<std::size_t> (side);
+}
+
 /** \brief 4 x 4 x 4 grid nodes and the cells that start at them; a bit per node or cell. */
 struct GridBlock
 {
@@ -93,7 +100,10 @@ public:
   /** \brief Largest coordinate in either direction. */
   static constexpr int LIMIT = (1 << 20) - 8;
 
-  SparseGrid (const Eigen::Vector3d &origin, double voxel_size) : origin_ (origin), voxel_size_ (voxel_size) {}
+  SparseGrid (const Eigen::Vector3d &origin, double voxel_size)
+      : origin_ (origin), voxel_size_ (voxel_size), cells_per_length_ (1.0 / voxel_size)
+  {
+  }
 
   double
   voxelSize () const
@@ -231,7 +241,7 @@ private:
   }
 
   Eigen::Vector3d origin_;
-  double voxel_size_;
+  double voxel_size_, cells_per_length_;
   int block_count_ = 0;
   std::vector<LargeVector<GridBlock>> chunks_; // of a fixed size: blocks stay where they are when others are made
   std::unordered_map<std::uint64_t, int> index_;

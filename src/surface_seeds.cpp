@@ -3,15 +3,73 @@
 // Where SurfaceTracker starts: at the nodes, and at their feet on the surface where that runs elsewhere.
 #include "surface_tracking.h"
 
+#include "grid_bits.h"
 #include "node_table.h"
 #include "parallel_collect.h"
 #include "surface_feet.h"
 
 #include <algorithm>
+#include <cmath>
 #include <utility>
 
 namespace erkpa
 {
+
+namespace
+{
+
+/** \brief Cells of a block. */
+struct BlockCells
+{
+  GridPoint first; ///< the lowest of the block
+  std::uint64_t cells;
+};
+
+/** \brief Collects cells, block by block; a block may come more than once. */
+class SeedBlocks
+{
+public:
+  using Array = LargeVector<BlockCells>;
+
+  explicit SeedBlocks (Array &blocks) : blocks_ (blocks) {}
+
+  /** \brief Add a cell and those beyond some of its faces, as bits. */
+  void
+  add (const GridPoint &cell, unsigned faces)
+  {
+    const GridPoint first = SparseGrid::blockOf (cell);
+    const std::uint64_t bit = SparseGrid::bitOf (cell);
+    std::uint64_t cells = bit;
+    for (int axis = 0; axis < 3; ++axis)
+    {
+      const bool goes_down = (faces >> faceOf (axis, 0) & 1U) != 0, goes_up = (faces >> faceOf (axis, 1) & 1U) != 0;
+      cells |= goes_down ? grid_bits::down (bit, axis) : 0;
+      cells |= goes_up ? grid_bits::up (bit, axis) : 0;
+      const GridPoint by{axis == 0 ? 4 : 0, axis == 1 ? 4 : 0, axis == 2 ? 4 : 0};
+      if (goes_down && (bit & grid_bits::FIRST[axis]) != 0)
+        addTo (first + GridPoint{-by.x, -by.y, -by.z}, grid_bits::intoBelow (bit, axis));
+      if (goes_up && (bit & grid_bits::LAST[axis]) != 0)
+        addTo (first + by, grid_bits::intoAbove (bit, axis));
+    }
+    addTo (first, cells);
+  }
+
+private:
+  void
+  addTo (const GridPoint &first, std::uint64_t cells)
+  {
+    constexpr std::size_t RECENT = 8; // a few blocks take turns
+    const auto oldest = blocks_.end () - static_cast<std::ptrdiff_t> (std::min (RECENT, blocks_.size ()));
+    auto known = std::find_if (oldest, blocks_.end (), [&] (const BlockCells &b) { return b.first == first; });
+    if (known == blocks_.end ())
+      known = blocks_.insert (known, {first, 0});
+    known->cells |= cells;
+  }
+
+  Array &blocks_;
+};
+
+} // namespace
 
 GridPoint
 SurfaceTracker::cellOfPlace (std::size_t place) const
@@ -22,31 +80,38 @@ SurfaceTracker::cellOfPlace (std::size_t place) const
   return grid_.cellOf ({nodes.coordinates (0)[place], nodes.coordinates (1)[place], nodes.coordinates (2)[place]});
 }
 
+unsigned
+SurfaceTracker::facesOfPlane (std::size_t place, const GridPoint &cell) const
+{
+  if (field_.options ().warp)
+    return 0; // normals are those of the space that is not warped
+  const NodeTable &nodes = field_.nodeTable ();
+  const Eigen::Vector3d n (nodes.normals[0][place], nodes.normals[1][place], nodes.normals[2][place]);
+  const Eigen::Vector3d x (nodes.grid->coordinates (0)[place], nodes.grid->coordinates (1)[place],
+                           nodes.grid->coordinates (2)[place]);
+  const double height = n.dot (grid_.position (cell) - x) / grid_.voxelSize () + 0.5 * n.sum (); // of its middle
+  const double across = 0.5 * n.lpNorm<1> ();
+  unsigned faces = 0;
+  for (int axis = 0; axis < 3; ++axis)
+    for (const int side : {0, 1})
+      faces |= std::abs (height + (2 * side - 1) * n[axis]) < across ? 1U << faceOf (axis, side) : 0U;
+  return faces;
+}
+
 void
 SurfaceTracker::seedFromNodes ()
 {
-  struct BlockCells
-  {
-    GridPoint first;
-    std::uint64_t cells;
-  };
-  const auto found = parallelCollect<LargeVector<BlockCells>> (
-      nodeCount (), options_.threads,
-      [this] (std::size_t first, std::size_t last, LargeVector<BlockCells> &blocks)
-      {
-        for (std::size_t i = first; i < last; ++i)
-        {
-          const GridPoint cell = cellOfPlace (i);
-          const GridPoint block = SparseGrid::blockOf (cell);
-          // A few blocks take turns.
-          constexpr std::size_t RECENT = 8;
-          const auto oldest = blocks.end () - static_cast<std::ptrdiff_t> (std::min (RECENT, blocks.size ()));
-          auto known = std::find_if (oldest, blocks.end (), [&] (const BlockCells &b) { return b.first == block; });
-          if (known == blocks.end ())
-            known = blocks.insert (known, {block, 0});
-          known->cells |= SparseGrid::bitOf (cell);
-        }
-      });
+  const auto found =
+      parallelCollect<SeedBlocks::Array> (nodeCount (), options_.threads,
+                                          [this] (std::size_t first, std::size_t last, SeedBlocks::Array &blocks)
+                                          {
+                                            SeedBlocks seeds (blocks);
+                                            for (std::size_t i = first; i < last; ++i)
+                                            {
+                                              const GridPoint cell = cellOfPlace (i);
+                                              seeds.add (cell, facesOfPlane (i, cell));
+                                            }
+                                          });
   for (const BlockCells &block : found)
     addToFront (block.first, block.cells);
 }

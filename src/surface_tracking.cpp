@@ -19,13 +19,6 @@ namespace
 
 constexpr std::size_t MAX_ACTIVE_CELLS = 100000000; // some 100 GB of grid and mesh
 
-/** \brief Number of a cell's face: that of the lower or of the higher coordinate along an axis. */
-std::size_t
-faceOf (int axis, int side)
-{
-  return 2 * static_cast<std::size_t> (axis) + static_cast<std::size_t> (side);
-}
-
 std::uint64_t
 anyOf (const std::array<std::uint64_t, 8> &corners)
 {

@@ -90,6 +90,10 @@ private:
   GridPoint
   cellOfPlace (std::size_t place) const;
 
+  /** \brief The faces of a node's cell beyond which its tangent plane goes on, as bits. */
+  unsigned
+  facesOfPlane (std::size_t place, const GridPoint &cell) const;
+
   void
   seedFromNodes ();
 
