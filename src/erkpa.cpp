@@ -291,6 +291,7 @@ Outcome
 run (const pcl::PCLPointCloud2 &cloud, const Options &options, const ProgressCallback &progress, const Result &result)
 {
   Outcome outcome;
+  const LargePageKeeper keeper;
   try
   {
     outcome = runUnguarded (cloud, options, progress, result);

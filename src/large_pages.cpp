@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <erkpa/large_pages.h>
 
+#include "large_page_store.h"
+
 #ifdef __linux__
 #include <sys/mman.h>
 #endif
@@ -19,13 +21,15 @@ namespace erkpa
 namespace
 {
 
-constexpr std::size_t PAGE = std::size_t (1) << 21;
+/** \brief From here on an array is large: a page of its own is made sooner than the small ones it would fill. */
+constexpr std::size_t LARGE = LargePageStore::PAGE / 4;
 
 /** \brief For the whole pages in a piece of memory; false where there are none, or the system has none. */
 bool
 useLargePages (void *memory, std::size_t bytes)
 {
 #if defined(MADV_HUGEPAGE) && !defined(__SANITIZE_ADDRESS__) // which has its own malloc
+  constexpr std::size_t PAGE = LargePageStore::PAGE;
   const std::size_t offset = (PAGE - reinterpret_cast<std::uintptr_t> (memory) % PAGE) % PAGE; // to where one begins
   return bytes >= offset + PAGE &&
          madvise (static_cast<char *> (memory) + offset, (bytes - offset) / PAGE * PAGE, MADV_HUGEPAGE) == 0;
@@ -42,7 +46,7 @@ bool
 preferLargePages (std::size_t bytes)
 {
 #if defined(__GLIBC__)
-  if (bytes < 2 * PAGE || bytes > (std::size_t (1) << 30) || mallopt (M_MMAP_THRESHOLD, INT_MAX) == 0 ||
+  if (bytes < 2 * LargePageStore::PAGE || bytes > (std::size_t (1) << 30) || mallopt (M_MMAP_THRESHOLD, INT_MAX) == 0 ||
       mallopt (M_TRIM_THRESHOLD, INT_MAX) == 0)
     return false;
   // The end of the heap: what is freed there is kept, and handed out again piece by piece.
@@ -61,15 +65,19 @@ preferLargePages (std::size_t bytes)
 void *
 allocateLarge (std::size_t bytes)
 {
-  const bool is_large = bytes >= PAGE / 4;
-  if (is_large && bytes < std::numeric_limits<std::size_t>::max () - PAGE)
-    bytes = (bytes + PAGE - 1) / PAGE * PAGE;
-  void *memory = is_large ? std::aligned_alloc (PAGE, bytes) : std::malloc (bytes);
+  void *const memory = bytes < LARGE ? std::malloc (bytes) : LargePageStore::instance ().take (bytes);
   if (memory == nullptr && bytes > 0)
     throw std::bad_alloc ();
-  if (is_large)
-    useLargePages (memory, bytes);
   return memory;
+}
+
+void
+freeLarge (void *memory, std::size_t bytes) noexcept
+{
+  if (bytes < LARGE)
+    std::free (memory);
+  else
+    LargePageStore::instance ().give (memory, bytes);
 }
 
 void
@@ -78,10 +86,14 @@ adviseLargePages (void *memory, std::size_t bytes) noexcept
   useLargePages (memory, bytes);
 }
 
-void
-freeLarge (void *memory) noexcept
+LargePageKeeper::LargePageKeeper ()
 {
-  std::free (memory);
+  LargePageStore::instance ().keep ();
+}
+
+LargePageKeeper::~LargePageKeeper ()
+{
+  LargePageStore::instance ().release ();
 }
 
 } // namespace erkpa

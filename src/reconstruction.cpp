@@ -173,6 +173,7 @@ buildField (const PointView &view, const Options &options, const SearchFactory &
 {
   field.reset ();
   report = Report ();
+  const LargePageKeeper keeper;
   const StageClock total (report.seconds_total);
   Outcome outcome = checkOptions (view, options.field);
   if (!outcome.ok ())
@@ -192,6 +193,7 @@ Outcome
 buildMesh (const ImplicitField &field, const Options &options, TriangleMesh &mesh, Report &report,
            const ProgressCallback &progress)
 {
+  const LargePageKeeper keeper;
   const StageClock total (report.seconds_total);
   const StageClock clock (report.seconds_polygonizer);
   Outcome outcome = polygonize (field, options.polygonizer, mesh, report.polygonizer, progress);

@@ -22,14 +22,30 @@ namespace erkpa
 bool
 preferLargePages (std::size_t bytes = std::size_t (1) << 29);
 
-/** \brief Memory from malloc; much of it comes in large pages where the system has them.
+/** \brief While there is one, memory that a LargeVector gives up is kept for the next one of the process.
+ *
+ * Every reconstruction has one. A program that reconstructs again and again may hold one all the time: the memory of
+ * one reconstruction, some 200 bytes a triangle, then serves the next.
+ */
+class LargePageKeeper
+{
+public:
+  LargePageKeeper ();
+  ~LargePageKeeper ();
+  LargePageKeeper (const LargePageKeeper &) = delete;
+  LargePageKeeper &
+  operator= (const LargePageKeeper &) = delete;
+};
+
+/** \brief Memory, much of which comes in large pages where the system has them.
  * \throw std::bad_alloc where there is none
  */
 void *
 allocateLarge (std::size_t bytes);
 
+/** \param[in] bytes as they were asked for */
 void
-freeLarge (void *memory) noexcept;
+freeLarge (void *memory, std::size_t bytes) noexcept;
 
 /** \brief Ask for large pages where memory that is not filled yet spans some; nothing happens where it does not. */
 void
@@ -70,9 +86,9 @@ struct LargePageAllocator
   }
 
   void
-  deallocate (T *memory, std::size_t) noexcept
+  deallocate (T *memory, std::size_t count) noexcept
   {
-    freeLarge (memory);
+    freeLarge (memory, count * sizeof (T));
   }
 
   template <typename OtherT>

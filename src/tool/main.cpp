@@ -48,6 +48,7 @@ int
 main (int argc, char **argv)
 {
   erkpa::preferLargePages ();
+  const erkpa::LargePageKeeper keeper;
   try
   {
     erkpa::tool::runCommandLine (argc, argv);

@@ -83,6 +83,7 @@ template <typename PointNT>
 bool
 ERKPA<PointNT>::makeMesh (TriangleMesh &mesh)
 {
+  const LargePageKeeper keeper; // what the field gives up serves the mesh
   // Only a field by collocation takes long to make.
   const double share = options_.field.interpolation == Interpolation::COLLOCATION ? 0.5 : 0.0;
   return guarded (

@@ -1,0 +1,174 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "large_page_store.h"
+
+#ifdef __linux__
+#include <sys/mman.h>
+#endif
+
+#include <algorithm>
+#include <cstdint>
+#include <cstdlib>
+#include <exception>
+#include <limits>
+
+// AddressSanitizer has its own malloc, which finds more.
+#if defined(MADV_HUGEPAGE) && !defined(__SANITIZE_ADDRESS__)
+#define ERKPA_HAS_LARGE_PAGES 1
+#else
+#define ERKPA_HAS_LARGE_PAGES 0
+#endif
+
+namespace erkpa
+{
+
+namespace
+{
+
+constexpr std::size_t PAGE = LargePageStore::PAGE;
+
+#if ERKPA_HAS_LARGE_PAGES
+
+void *
+takeFromSystem (std::size_t bytes)
+{
+  void *const mapped = mmap (nullptr, bytes + PAGE, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS, -1, 0);
+  if (mapped == MAP_FAILED)
+    return nullptr;
+  const std::size_t before = (PAGE - reinterpret_cast<std::uintptr_t> (mapped) % PAGE) % PAGE; // where a page begins
+  char *const first = static_cast<char *> (mapped) + before;
+  if (before > 0)
+    munmap (mapped, before);
+  munmap (first + bytes, PAGE - before);
+  madvise (first, bytes, MADV_HUGEPAGE);
+  return first;
+}
+
+void
+giveToSystem (void *memory, std::size_t bytes) noexcept
+{
+  munmap (memory, bytes);
+}
+
+#else
+
+void *
+takeFromSystem (std::size_t bytes)
+{
+  return std::malloc (bytes);
+}
+
+void
+giveToSystem (void *memory, std::size_t) noexcept
+{
+  std::free (memory);
+}
+
+#endif
+
+std::size_t
+wholePages (std::size_t bytes)
+{
+  return (bytes + PAGE - 1) / PAGE * PAGE;
+}
+
+} // namespace
+
+LargePageStore &
+LargePageStore::instance ()
+{
+  static auto *const store = new LargePageStore; // arrays may outlive what ends with the program
+  return *store;
+}
+
+void *
+LargePageStore::take (std::size_t bytes)
+{
+  if (bytes > std::numeric_limits<std::size_t>::max () - 2 * PAGE)
+    return nullptr;
+  bytes = wholePages (bytes);
+  void *const kept = takeKept (bytes);
+  return kept != nullptr ? kept : takeFromSystem (bytes);
+}
+
+/** \brief From the smallest range that does. */
+void *
+LargePageStore::takeKept (std::size_t bytes)
+{
+  const std::lock_guard<std::mutex> lock (mutex_);
+  auto best = kept_.end ();
+  for (auto range = kept_.begin (); range != kept_.end (); ++range)
+    if (range->bytes >= bytes && (best == kept_.end () || range->bytes < best->bytes))
+      best = range;
+  if (best == kept_.end ())
+    return nullptr;
+  void *const memory = best->first;
+  best->first += bytes;
+  best->bytes -= bytes;
+  if (best->bytes == 0)
+    kept_.erase (best);
+  return memory;
+}
+
+void
+LargePageStore::give (void *memory, std::size_t bytes) noexcept
+{
+  bytes = wholePages (bytes);
+  if (!tryToKeep ({static_cast<char *> (memory), bytes}))
+    giveToSystem (memory, bytes);
+}
+
+/** \brief False where nobody wants it kept. */
+bool
+LargePageStore::tryToKeep (const Range &range) noexcept
+{
+#if ERKPA_HAS_LARGE_PAGES // memory of malloc can neither be joined nor divided
+  try
+  {
+    const std::lock_guard<std::mutex> lock (mutex_);
+    if (keepers_ == 0)
+      return false;
+    const auto is_below = [] (const Range &a, const Range &b) { return a.first < b.first; };
+    auto at = kept_.insert (std::lower_bound (kept_.begin (), kept_.end (), range, is_below), range);
+    const auto join_next = [this] (auto one)
+    {
+      if (one + 1 == kept_.end () || one->first + one->bytes != (one + 1)->first)
+        return;
+      one->bytes += (one + 1)->bytes;
+      kept_.erase (one + 1);
+    };
+    join_next (at);
+    if (at != kept_.begin ())
+      join_next (at - 1);
+    return true;
+  }
+  catch (const std::exception &)
+  {
+    return false;
+  }
+#else
+  static_cast<void> (range);
+  return false;
+#endif
+}
+
+void
+LargePageStore::keep ()
+{
+  const std::lock_guard<std::mutex> lock (mutex_);
+  ++keepers_;
+}
+
+void
+LargePageStore::release () noexcept
+{
+  std::vector<Range> given_up;
+  {
+    const std::lock_guard<std::mutex> lock (mutex_);
+    if (--keepers_ == 0)
+      given_up.swap (kept_);
+  }
+  for (const Range &range : given_up)
+    giveToSystem (range.first, range.bytes);
+}
+
+} // namespace erkpa
