@@ -35,8 +35,11 @@ isInReach (const LocalField &local, const PolygonizerOptions &options, double vo
 void
 BlockEvaluator::evaluate (GridField &worker, const int *first_block, const int *last_block) const
 {
+  const bool is_sketched = sketchCube (worker, first_block, last_block);
   for (const BlockPart &part : parts_)
   {
+    if (is_sketched)
+      break;
     worker.wanted.clear ();
     for (const int *index = first_block; index != last_block; ++index)
     {
@@ -80,6 +83,104 @@ BlockEvaluator::evaluateWanted (GridField &worker, const int *first_block, const
   worker.local.gather (center, extent);
   for (const WantedNode &node : worker.left)
     evaluateAlone (worker.local, node);
+}
+
+bool
+BlockEvaluator::takeMiddles (BlockField &field, CubeSketch &sketch)
+{
+  for (std::size_t i = 0; i < CubeSketch::OCTANTS; ++i)
+    if (!field.addPoint (sketch.middle (i)))
+      return false;
+  field.evaluate (true);
+  for (std::size_t i = 0; i < CubeSketch::OCTANTS; ++i)
+  {
+    if (!field.isSettled (i) || !field.isInReach (i))
+      return false;
+    sketch.set (i, field.value (i), field.gradient (i));
+  }
+  return true;
+}
+
+bool
+BlockEvaluator::sketchCube (GridField &worker, const int *first_block, const int *last_block) const
+{
+  constexpr double CLOSE[] = {0.15, 0.6}, NEAR = 1.3; // voxels
+  const auto is_known = [this] (int block) { return grid_.block (block).known != 0; };
+  if (!sketches_ || last_block - first_block != static_cast<std::ptrdiff_t> (CubeSketch::OCTANTS) ||
+      std::any_of (first_block, last_block, is_known))
+    return false;
+  const double half = 0.5 * (GridBlock::SIDE - 1) * grid_.voxelSize (), side = GridBlock::SIDE * grid_.voxelSize ();
+  const GridPoint first = BlockGroups::cubeOf (grid_.block (*first_block).first);
+  CubeSketch sketch (grid_.position (first) + Eigen::Vector3d::Constant (half), side);
+  if (!worker.block.gather (sketch.center (), std::sqrt (3.0) * (0.5 * side + half)) ||
+      !takeMiddles (worker.block, sketch))
+    return false;
+  const double unit = grid_.voxelSize () * sketch.steepest ();
+  for (const double close : CLOSE)
+  {
+    fillIn (sketch, close * unit, first_block, last_block, worker);
+    if (evaluateClose (worker, 0.5 * close * unit))
+      return true;
+  }
+  for (const int *index = first_block; index != last_block; ++index)
+    requestNear (NEAR * unit, grid_.block (*index));
+  return false;
+}
+
+void
+BlockEvaluator::requestNear (double most, GridBlock &block)
+{
+  for (int node = 0; node < GridBlock::NODES; ++node)
+  {
+    const bool is_near = std::abs (static_cast<double> (block.values[static_cast<std::size_t> (node)])) <= most;
+    block.needed |= static_cast<std::uint64_t> (is_near) << node;
+  }
+  block.forget ();
+}
+
+void
+BlockEvaluator::fillIn (const CubeSketch &sketch, double close, const int *first_block, const int *last_block,
+                        GridField &worker) const
+{
+  worker.wanted.clear ();
+  for (const int *index = first_block; index != last_block; ++index)
+  {
+    GridBlock &block = grid_.block (*index);
+    for (int row = 0; row < GridBlock::NODES; row += GridBlock::SIDE)
+    {
+      const Eigen::Vector3d x = grid_.position (SparseGrid::pointAt (block, row));
+      std::array<double, GridBlock::SIDE> values{};
+      sketch.valuesOnLine (x, grid_.voxelSize (), values);
+      for (int i = 0; i < GridBlock::SIDE; ++i)
+      {
+        const double value = values[static_cast<std::size_t> (i)] - options_.iso_level;
+        block.setValue (row + i, static_cast<float> (value), true);
+        if (std::abs (value) <= close)
+          worker.wanted.push_back ({&block, row + i});
+      }
+    }
+  }
+}
+
+bool
+BlockEvaluator::evaluateClose (GridField &worker, double most) const
+{
+  BlockField &field = worker.block;
+  field.clearPoints ();
+  for (const WantedNode &node : worker.wanted)
+    if (!field.addPoint (positionOf (node)))
+      return false;
+  field.evaluate (false);
+  for (std::size_t i = 0; i < worker.wanted.size (); ++i)
+  {
+    const WantedNode &node = worker.wanted[i];
+    const double value = field.value (i) - options_.iso_level;
+    const double sketched = static_cast<double> (node.block->values[static_cast<std::size_t> (node.node)]);
+    if (!(std::abs (value - sketched) <= most) || !field.isInReach (i))
+      return false;
+    node.block->setValueAgain (node.node, static_cast<float> (value));
+  }
+  return true;
 }
 
 void

@@ -2,6 +2,8 @@
 #pragma once
 
 #include "block_field.h"
+#include "block_groups.h"
+#include "cube_sketch.h"
 #include "local_field.h"
 #include "sparse_grid.h"
 
@@ -48,9 +50,17 @@ public:
   /** \param[in] foresees whether nodes that were not asked for yet are evaluated, too, where it looks as if they will
    */
   BlockEvaluator (const ImplicitField &field, const PolygonizerOptions &options, SparseGrid &grid, bool foresees)
-      : options_ (options), grid_ (grid), foresees_ (foresees),
+      : options_ (options), grid_ (grid), foresees_ (foresees), sketches_ (canSketch (field, grid.voxelSize ())),
         parts_ (partsOfBlock (field.typicalRadius () / grid.voxelSize ()))
   {
+  }
+
+  /** \brief Whether whole cubes (BlockGroups) are asked for at best. */
+  static bool
+  canSketch (const ImplicitField &field, double voxel_size)
+  {
+    return BlockGroups::areCubes (field.typicalRadius () / voxel_size) && BlockField::canEvaluate (field) &&
+           field.faces () == nullptr && field.options ().sharp_surfaces.empty ();
   }
 
   /** \brief Evaluate those of some blocks that share a gathering of the field's nodes: see BlockGroups. */
@@ -69,6 +79,32 @@ private:
 
   void
   evaluateWanted (GridField &worker, const int *first_block, const int *last_block) const;
+
+  /** \brief Value all nodes of a cube of blocks (BlockGroups) of which none is known yet.
+   *
+   * Supports that are far larger than blocks leave f so smooth that its values and gradients in the middles of the
+   * blocks tell it in between; only nodes next to f = iso are evaluated.
+   * \return false, and nothing is known, where these show that it is not
+   */
+  bool
+  sketchCube (GridField &worker, const int *first_block, const int *last_block) const;
+
+  /** \brief Take f and its gradients in the middles of the octants; false where they are undefined or out of reach. */
+  static bool
+  takeMiddles (BlockField &field, CubeSketch &sketch);
+
+  /** \brief Take back the values of a block's nodes; those up to \a most are to be evaluated. */
+  static void
+  requestNear (double most, GridBlock &block);
+
+  /** \brief Value the nodes of the cube by a sketch, but list as wanted those that are to be evaluated. */
+  void
+  fillIn (const CubeSketch &sketch, double close, const int *first_block, const int *last_block,
+          GridField &worker) const;
+
+  /** \brief Evaluate the wanted nodes; false where one is off its sketch by more than \a most, or out of reach. */
+  bool
+  evaluateClose (GridField &worker, double most) const;
 
   /** \brief Evaluate the wanted nodes in lanes; those that want LocalField are left. */
   void
@@ -93,7 +129,7 @@ private:
 
   const PolygonizerOptions &options_;
   SparseGrid &grid_;
-  bool foresees_;
+  bool foresees_, sketches_;
   const std::vector<BlockPart> &parts_;
 };
 

@@ -12,9 +12,7 @@ namespace erkpa
 BlockGroups::BlockGroups (const SparseGrid &grid, std::vector<int> blocks, double support)
     : blocks_ (std::move (blocks))
 {
-  constexpr double LARGE = 16.0; // voxels
-  constexpr int SHIFT = 3;       // a cube of 2 blocks
-  if (!(support > LARGE))
+  if (!areCubes (support))
   {
     firsts_.resize (blocks_.size () + 1);
     std::iota (firsts_.begin (), firsts_.end (), 0);
@@ -24,8 +22,8 @@ BlockGroups::BlockGroups (const SparseGrid &grid, std::vector<int> blocks, doubl
   std::vector<std::pair<Cube, int>> sorted;
   for (const int block : blocks_)
   {
-    const GridPoint &first = grid.block (block).first;
-    sorted.push_back ({{first.z >> SHIFT, first.y >> SHIFT, first.x >> SHIFT}, block});
+    const GridPoint cube = cubeOf (grid.block (block).first);
+    sorted.push_back ({{cube.z, cube.y, cube.x}, block});
   }
   std::sort (sorted.begin (), sorted.end ());
   for (std::size_t i = 0; i < sorted.size (); ++i)

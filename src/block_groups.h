@@ -13,6 +13,24 @@ namespace erkpa
 class BlockGroups
 {
 public:
+  static constexpr int CUBE = 2; ///< blocks along the side of a cube
+
+  /** \brief Whether supports are that large. */
+  static bool
+  areCubes (double support)
+  {
+    constexpr double LARGE = 16.0; // voxels
+    return support > LARGE;
+  }
+
+  /** \brief The lowest node of the cube of a node. */
+  static GridPoint
+  cubeOf (const GridPoint &point)
+  {
+    constexpr int MASK = ~(CUBE * GridBlock::SIDE - 1);
+    return {point.x & MASK, point.y & MASK, point.z & MASK};
+  }
+
   /** \brief Each block is a group of its own; where supports are far larger than blocks, those in a cube are one.
    * \param[in] blocks indices in the grid
    * \param[in] support typical support radius, in voxels

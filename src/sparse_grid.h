@@ -78,6 +78,22 @@ struct GridBlock
     near |= is_near ? bit : 0;
     known |= bit;
   }
+
+  /** \brief Correct the value of a known node. */
+  void
+  setValueAgain (int node, float value)
+  {
+    const std::uint64_t bit = std::uint64_t (1) << node;
+    values[static_cast<std::size_t> (node)] = value;
+    inside = value < 0.0f ? inside | bit : inside & ~bit;
+  }
+
+  /** \brief Forget the values of all nodes. */
+  void
+  forget ()
+  {
+    known = inside = undefined = near = 0;
+  }
 };
 
 /** \brief Where a node lies: block and place in it. */

@@ -123,6 +123,35 @@ SurfaceTracker::request (int index, std::uint64_t nodes)
   block.needed |= nodes;
 }
 
+/** \brief Have the cubes of requested blocks evaluated as a whole if nothing of them is known yet. */
+void
+SurfaceTracker::requestCubes ()
+{
+  std::vector<std::array<int, 3>> cubes;
+  for (const int block : requested_blocks_)
+  {
+    const GridPoint cube = BlockGroups::cubeOf (grid_.block (block).first);
+    cubes.push_back ({cube.z, cube.y, cube.x});
+  }
+  std::sort (cubes.begin (), cubes.end ());
+  cubes.erase (std::unique (cubes.begin (), cubes.end ()), cubes.end ());
+  for (const auto &[z, y, x] : cubes)
+  {
+    std::array<int, 8> blocks{};
+    std::uint64_t known = 0;
+    for (int corner = 0; corner < 8; ++corner)
+    {
+      const GridPoint by = cornerOffset (corner);
+      int &block = blocks[static_cast<std::size_t> (corner)];
+      block = grid_.placeBlock ({x + GridBlock::SIDE * by.x, y + GridBlock::SIDE * by.y, z + GridBlock::SIDE * by.z});
+      known |= grid_.block (block).known;
+    }
+    for (const int block : blocks)
+      if (known == 0 && grid_.block (block).needed == 0)
+        requested_blocks_.push_back (block);
+  }
+}
+
 void
 SurfaceTracker::evaluateRequested ()
 {
@@ -130,8 +159,10 @@ SurfaceTracker::evaluateRequested ()
   constexpr std::size_t FEW = 8;
   if (evaluated_blocks_ == 0)
     foresees_ = nodeCount () < FEW * requested_blocks_.size ();
-  const BlockEvaluator evaluator (field_, options_, grid_, foresees_);
   const std::size_t block_count = requested_blocks_.size ();
+  if (BlockEvaluator::canSketch (field_, grid_.voxelSize ()))
+    requestCubes ();
+  const BlockEvaluator evaluator (field_, options_, grid_, foresees_);
   const BlockGroups groups (grid_, std::move (requested_blocks_), field_.typicalRadius () / grid_.voxelSize ());
   // In slices, so that progress shows during the first front, which is the largest by far.
   constexpr std::size_t SLICE = 8192;

@@ -67,6 +67,9 @@ private:
   request (int block, std::uint64_t nodes);
 
   void
+  requestCubes ();
+
+  void
   evaluateRequested ();
 
   void

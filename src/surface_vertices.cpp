@@ -22,6 +22,7 @@ namespace
 constexpr double TOLERANCE = 1e-4; // of a voxel, along the edge
 constexpr double MARGIN = 1e-3;    // of a voxel: a vertex keeps this far from the grid nodes, or triangles degenerate
 constexpr int MAX_STEPS = 12;
+constexpr double LEAST_SHORT = 0.03; // of a voxel: a last step
 
 /** \brief An edge of the grid on which f - iso changes its sign, and what is known of the root on it. */
 struct EdgeRoot
@@ -90,7 +91,8 @@ public:
   VertexPlacer (const ImplicitField &field, const PolygonizerOptions &options, const SparseGrid &grid,
                 SurfaceVertices &vertices)
       : options_ (options), grid_ (grid), vertices_ (vertices),
-        parts_ (partsOfBlock (field.typicalRadius () / grid.voxelSize ()))
+        parts_ (partsOfBlock (field.typicalRadius () / grid.voxelSize ())),
+        short_step_ (std::max (LEAST_SHORT, std::sqrt (2.0 * TOLERANCE * field.typicalRadius () / grid.voxelSize ())))
   {
   }
 
@@ -165,7 +167,6 @@ private:
   placeTogether (BlockField &field, std::vector<EdgeRoot> &roots) const
   {
     constexpr int ROUNDS = 5;
-    constexpr double SHORT = 0.03;
     std::vector<EdgeRoot> alone;
     for (int round = 0; round < ROUNDS && !roots.empty (); ++round)
     {
@@ -189,7 +190,7 @@ private:
         const double slope = field.gradient (i)[root.axis] * grid_.voxelSize ();
         if (!field.isSettled (i) || field.thickening (i) != 0.0)
           alone.push_back (root);
-        else if (root.refine (field.value (i) - options_.iso_level, slope) > SHORT)
+        else if (root.refine (field.value (i) - options_.iso_level, slope) > short_step_)
           roots[left++] = root;
         else
         {
@@ -229,6 +230,7 @@ private:
   const SparseGrid &grid_;
   SurfaceVertices &vertices_;
   const std::vector<BlockPart> &parts_;
+  double short_step_; // voxels: f curves by about the inverse of the radius, so that it leaves no more than TOLERANCE
 };
 
 } // namespace

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "cell_loops.h"
+#include "cube_sketch.h"
 #include "loop_triangulation.h"
 #include "plane_meeting.h"
 #include "shapes.h"
@@ -290,6 +291,49 @@ TEST (Polygonizer, MakesTheSameSphereOfSupportsThatAreFarLargerThanVoxels)
   EXPECT_NEAR (shapes::volume (mesh), 4.0 / 3.0 * M_PI, 0.005 * 4.0 / 3.0 * M_PI);
   options.threads = 3;
   EXPECT_EQ (mesh.vertices, meshOf (*field, options).vertices);
+}
+
+TEST (Polygonizer, EvaluatesFewNodesOfTheGridWhereSupportsAreFarLargerThanVoxels)
+{
+  erkpa::FieldOptions options;
+  options.radius = 0.3;
+  PolygonizerOptions fine;
+  fine.voxel_size = 0.015;
+  for (const erkpa::Constraint constraint : {erkpa::Constraint::HERMITE, erkpa::Constraint::FUNCTIONAL})
+  {
+    options.constraint = constraint;
+    const auto field = shapes::field (shapes::torus (6000, 1.0, 0.4), options);
+    erkpa::PolygonizerReport report;
+    const TriangleMesh mesh = meshOf (*field, fine, &report);
+    EXPECT_MESH_CONTRACT (mesh, true);
+    EXPECT_EQ (erkpa::measureTopology (mesh).euler, 0);
+    constexpr std::size_t STEP = 13;
+    std::size_t off = 0;
+    for (std::size_t i = 0; i < mesh.vertices.size (); i += STEP)
+      off += std::abs (field->value (mesh.vertices[i].cast<double> ())) > 1e-3 * fine.voxel_size ? 1 : 0;
+    EXPECT_LT (off, mesh.vertices.size () / STEP / 100); // next to grid nodes a margin is kept
+    EXPECT_LT (report.evaluations, 5 * mesh.vertices.size () / 2);
+  }
+}
+
+TEST (CubeSketch, IsExactForQuadraticFunctions)
+{
+  Eigen::Matrix3d bend;
+  bend << 0.3, -0.2, 0.5, -0.2, -0.7, 0.1, 0.5, 0.1, 0.4;
+  const Vector3d slope (0.2, -1.1, 0.6);
+  const auto f = [&] (const Vector3d &x) { return 0.7 + slope.dot (x) + 0.5 * x.dot (bend * x); };
+  erkpa::CubeSketch sketch (Vector3d (0.3, -0.4, 1.0), 0.8);
+  for (std::size_t i = 0; i < erkpa::CubeSketch::OCTANTS; ++i)
+    sketch.set (i, f (sketch.middle (i)), slope + bend * sketch.middle (i));
+  for (const double y : {-0.9, -0.4, 0.1, 0.9})
+    for (const double z : {0.5, 1.3, 2.2})
+    {
+      std::array<double, 5> values{};
+      sketch.valuesOnLine ({0.0, y, z}, 0.37, values);
+      for (std::size_t i = 0; i < values.size (); ++i)
+        EXPECT_NEAR (values[i], f ({0.37 * static_cast<double> (i), y, z}), 1e-12);
+    }
+  EXPECT_GE (sketch.steepest (), (slope + bend * sketch.middle (3)).norm ());
 }
 
 TEST (SurfaceFeet, AreWhereTheSurfaceIsNearestAndMissingWhereThereIsNone)
