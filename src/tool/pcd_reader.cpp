@@ -174,7 +174,7 @@ readPcd (std::string_view bytes, const std::string &path)
   const std::size_t points = static_cast<std::size_t> (cloud.width) * cloud.height;
   const std::string_view body = bytes.substr (scanner.offset ());
   if (header.data == "ascii")
-    readRows (scanner, points, cloud);
+    requireRows (scanner, points, cloud);
   else if (header.data == "binary")
   {
     requireBytes (points * cloud.point_step, body, path);

@@ -109,7 +109,7 @@ public:
     cloud.width = static_cast<std::uint32_t> (element.count);
     cloud.height = 1;
     if (is_text_)
-      readRows (scanner_, element.count, cloud);
+      requireRows (scanner_, element.count, cloud);
     else
       takeBytes (cloud);
     return cloud;

@@ -2,9 +2,12 @@
 #include "point_fields.h"
 
 #include "../field_type.h"
+#include "../threads.h"
+#include "tool_error.h"
 
 #include <algorithm>
 #include <cstring>
+#include <exception>
 #include <limits>
 #include <type_traits>
 
@@ -25,18 +28,34 @@ load (const std::uint8_t *from)
   return value;
 }
 
-/** \brief A number as the bytes of a type; what an integer type cannot hold becomes its nearest value. */
+/** \brief A number as the bytes of a type; what an integer type cannot hold becomes its nearest value.
+ * \return where the next one goes
+ */
 template <typename T>
-void
-append (double value, std::vector<std::uint8_t> &data)
+std::uint8_t *
+store (double value, std::uint8_t *to)
 {
   constexpr auto LEAST = static_cast<double> (std::numeric_limits<T>::lowest ());
   constexpr auto MOST = static_cast<double> (std::numeric_limits<T>::max ());
   T stored = value >= MOST ? std::numeric_limits<T>::max () : std::numeric_limits<T>::lowest ();
   if (std::is_floating_point_v<T> || (value > LEAST && value < MOST))
     stored = static_cast<T> (value);
-  const auto *bytes = reinterpret_cast<const std::uint8_t *> (&stored);
-  data.insert (data.end (), bytes, bytes + sizeof (T));
+  std::memcpy (to, &stored, sizeof (T));
+  return to + sizeof (T);
+}
+
+/** \brief The values of a row of text as the bytes of a point. */
+void
+storeRow (const TextScanner &scanner, const std::vector<std::string_view> &tokens, const std::vector<Field> &fields,
+          std::uint8_t *to)
+{
+  auto token = tokens.begin ();
+  for (const Field &field : fields)
+    for (std::uint32_t i = 0; i < field.count; ++i, ++token)
+    {
+      const double value = scanner.number (*token);
+      to = withType (field.datatype, [&] (auto zero) { return store<decltype (zero)> (value, to); });
+    }
 }
 
 } // namespace
@@ -69,20 +88,6 @@ columnsOf (const pcl::PCLPointCloud2 &cloud)
 }
 
 void
-appendRow (const TextScanner &scanner, const std::vector<std::string_view> &tokens, pcl::PCLPointCloud2 &cloud)
-{
-  auto token = tokens.begin ();
-  for (const Field &field : cloud.fields)
-  {
-    for (std::uint32_t i = 0; i < field.count; ++i, ++token)
-    {
-      const double value = scanner.number (*token);
-      withType (field.datatype, [&] (auto zero) { append<decltype (zero)> (value, cloud.data); });
-    }
-  }
-}
-
-void
 appendNormals (const std::vector<Eigen::Vector3d> &normals, pcl::PCLPointCloud2 &cloud)
 {
   if (normals.empty ())
@@ -99,20 +104,55 @@ appendNormals (const std::vector<Eigen::Vector3d> &normals, pcl::PCLPointCloud2 
   cloud.data.swap (data);
 }
 
-void
-readRows (TextScanner &scanner, std::size_t count, pcl::PCLPointCloud2 &cloud)
+std::size_t
+readRows (TextScanner &scanner, std::size_t most, pcl::PCLPointCloud2 &cloud)
 {
-  const std::size_t columns = columnsOf (cloud);
-  const std::size_t possible = scanner.remaining () / (2 * columns + 1) + 1; // whatever a broken header promises
-  cloud.data.reserve (std::min (count, possible) * cloud.point_step);
-  std::vector<std::string_view> tokens;
-  for (std::size_t i = 0; i < count; ++i)
+  constexpr std::size_t STRETCH = 2048;
+  std::vector<TextScanner> stretches; // where each begins; the last one may have no rows
+  std::size_t rows = 0;
+  do
   {
-    if (!scanner.nextRow (tokens))
-      scanner.failEarly ("point " + std::to_string (i + 1) + " of " + std::to_string (count));
-    scanner.requireColumns (tokens, columns);
-    appendRow (scanner, tokens, cloud);
-  }
+    if (rows % STRETCH == 0)
+      stretches.push_back (scanner);
+  } while (rows < most && scanner.skipRow () && ++rows > 0);
+  cloud.data.resize (rows * cloud.point_step);
+  const std::size_t columns = columnsOf (cloud);
+  const auto read = [&] (std::vector<std::string_view> &tokens, std::size_t i)
+  {
+    TextScanner &stretch = stretches[i];
+    for (std::size_t row = i * STRETCH; row < std::min (rows, (i + 1) * STRETCH); ++row)
+    {
+      stretch.nextRow (tokens);
+      stretch.requireColumns (tokens, columns);
+      storeRow (stretch, tokens, cloud.fields, &cloud.data[row * cloud.point_step]);
+    }
+  };
+  std::vector<std::exception_ptr> errors (stretches.size ());
+  parallelFor (
+      stretches.size (), 0, [] { return std::vector<std::string_view> (); },
+      [&] (std::vector<std::string_view> &tokens, std::size_t i)
+      {
+        try
+        {
+          read (tokens, i);
+        }
+        catch (const ToolError &)
+        {
+          errors[i] = std::current_exception ();
+        }
+      });
+  for (const std::exception_ptr &error : errors)
+    if (error)
+      std::rethrow_exception (error);
+  return rows;
+}
+
+void
+requireRows (TextScanner &scanner, std::size_t count, pcl::PCLPointCloud2 &cloud)
+{
+  const std::size_t rows = readRows (scanner, count, cloud);
+  if (rows < count)
+    scanner.failEarly ("point " + std::to_string (rows + 1) + " of " + std::to_string (count));
 }
 
 FieldReader::FieldReader (const pcl::PCLPointCloud2 &cloud, const std::vector<std::string> &names)

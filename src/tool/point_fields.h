@@ -25,10 +25,6 @@ appendField (pcl::PCLPointCloud2 &cloud, const std::string &name, std::uint8_t d
 std::size_t
 sizeOfType (std::uint8_t datatype);
 
-/** \brief The values of a row of text, stored as the fields of the cloud ask; one column per value. */
-void
-appendRow (const TextScanner &scanner, const std::vector<std::string_view> &tokens, pcl::PCLPointCloud2 &cloud);
-
 /** \brief Appends nx ny nz to every point; nothing for no normals. */
 void
 appendNormals (const std::vector<Eigen::Vector3d> &normals, pcl::PCLPointCloud2 &cloud);
@@ -37,9 +33,17 @@ appendNormals (const std::vector<Eigen::Vector3d> &normals, pcl::PCLPointCloud2 
 std::size_t
 columnsOf (const pcl::PCLPointCloud2 &cloud);
 
-/** \brief Reads \a count rows of text behind the fields of \a cloud. */
+/** \brief Reads rows of text, up to the end or \a most of them, as the fields of \a cloud ask: one column per value.
+ *
+ * On all processors. Errors are those of the first row that has one.
+ * \return how many there were
+ */
+std::size_t
+readRows (TextScanner &scanner, std::size_t most, pcl::PCLPointCloud2 &cloud);
+
+/** \brief Reads \a count rows, no fewer. */
 void
-readRows (TextScanner &scanner, std::size_t count, pcl::PCLPointCloud2 &cloud);
+requireRows (TextScanner &scanner, std::size_t count, pcl::PCLPointCloud2 &cloud);
 
 /** \brief Reads one field of any numeric type. */
 class FieldReader

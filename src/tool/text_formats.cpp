@@ -8,6 +8,7 @@
 #include "text_scanner.h"
 
 #include <algorithm>
+#include <limits>
 
 namespace erkpa::tool
 {
@@ -32,27 +33,21 @@ setCount (pcl::PCLPointCloud2 &cloud, std::size_t count)
   cloud.height = 1;
 }
 
-/** \brief Rows x y z or x y z nx ny nz from \a tokens to the end of the text; the first row tells which. */
+/** \brief Rows x y z or x y z nx ny nz to the end of the text; the first row tells which. */
 void
-readTable (TextScanner &scanner, Tokens &tokens, pcl::PCLPointCloud2 &cloud)
+readTable (TextScanner &scanner, pcl::PCLPointCloud2 &cloud)
 {
+  TextScanner ahead = scanner;
+  Tokens tokens;
+  if (!ahead.nextRow (tokens))
+    return;
   if (tokens.size () != 3 && tokens.size () != 6)
-    scanner.fail ("the row has " + std::to_string (tokens.size ()) +
-                  " columns; give x y z, or x y z nx ny nz, on every line");
+    ahead.fail ("the row has " + std::to_string (tokens.size ()) +
+                " columns; give x y z, or x y z nx ny nz, on every line");
   appendFields (cloud, {"x", "y", "z"});
   if (tokens.size () == 6)
     appendFields (cloud, {"nx", "ny", "nz"});
-  const std::size_t columns = tokens.size ();
-  const std::size_t rows_to_come = scanner.remaining () / scanner.offset () + 1; // if all are as long as the first
-  cloud.data.reserve ((rows_to_come + rows_to_come / 8) * cloud.point_step);
-  std::size_t count = 0;
-  do
-  {
-    scanner.requireColumns (tokens, columns);
-    appendRow (scanner, tokens, cloud);
-    ++count;
-  } while (scanner.nextRow (tokens));
-  setCount (cloud, count);
+  setCount (cloud, readRows (scanner, std::numeric_limits<std::size_t>::max (), cloud));
 }
 
 } // namespace
@@ -62,9 +57,7 @@ readXyz (std::string_view bytes, const std::string &path)
 {
   RawCloud result;
   TextScanner scanner (bytes, path);
-  Tokens tokens;
-  if (scanner.nextRow (tokens))
-    readTable (scanner, tokens, result.cloud);
+  readTable (scanner, result.cloud);
   return result;
 }
 
@@ -72,18 +65,19 @@ RawCloud
 readPwn (std::string_view bytes, const std::string &path)
 {
   RawCloud result;
-  TextScanner scanner (bytes, path);
+  TextScanner scanner (bytes, path), ahead = scanner;
   Tokens tokens;
-  if (!scanner.nextRow (tokens))
+  if (!ahead.nextRow (tokens))
     return result;
   if (tokens.size () != 1)
   {
-    readTable (scanner, tokens, result.cloud);
+    readTable (scanner, result.cloud);
     return result;
   }
+  scanner = ahead;
   const std::size_t count = scanner.count (tokens[0]);
-  scanner.requireRow (tokens, "the first point");
-  readTable (scanner, tokens, result.cloud);
+  ahead.requireRow (tokens, "the first point");
+  readTable (scanner, result.cloud);
   const std::size_t rows = result.cloud.width;
   if (rows != count)
     scanner.fail ("the file has " + std::to_string (rows) + " rows and promises " + std::to_string (count) +
@@ -167,7 +161,7 @@ readOff (std::string_view bytes, const std::string &path)
   TextScanner ahead = scanner;
   ahead.nextRow (tokens);
   layOutOff (keyword, tokens, result.cloud);
-  readRows (scanner, count, result.cloud);
+  requireRows (scanner, count, result.cloud);
   setCount (result.cloud, count);
   if (keyword.has_normals)
     return result;

@@ -42,14 +42,34 @@ TextScanner::nextRow (std::vector<std::string_view> &tokens)
 {
   while (offset_ < text_.size ())
   {
-    const std::size_t end = std::min (text_.find ('\n', offset_), text_.size ());
-    split (text_.substr (offset_, end - offset_), tokens);
-    offset_ = std::min (end + 1, text_.size ());
-    ++line_;
+    split (takeLine (), tokens);
     if (!tokens.empty ())
       return true;
   }
   return false;
+}
+
+bool
+TextScanner::skipRow ()
+{
+  while (offset_ < text_.size ())
+  {
+    const std::string_view line = takeLine ();
+    const auto *const first = std::find_if_not (line.begin (), line.end (), isSeparator);
+    if (first != line.end () && *first != '#')
+      return true;
+  }
+  return false;
+}
+
+std::string_view
+TextScanner::takeLine ()
+{
+  const std::size_t end = std::min (text_.find ('\n', offset_), text_.size ());
+  const std::string_view line = text_.substr (offset_, end - offset_);
+  offset_ = std::min (end + 1, text_.size ());
+  ++line_;
+  return line;
 }
 
 void

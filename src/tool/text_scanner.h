@@ -25,6 +25,10 @@ public:
   bool
   nextRow (std::vector<std::string_view> &tokens);
 
+  /** \brief Pass over what nextRow would split. */
+  bool
+  skipRow ();
+
   /** \brief Like nextRow, but the end of the text is an error: \a expected is missing. */
   void
   requireRow (std::vector<std::string_view> &tokens, const char *expected);
@@ -56,13 +60,11 @@ public:
     return offset_;
   }
 
-  std::size_t
-  remaining () const
-  {
-    return text_.size () - offset_;
-  }
-
 private:
+  /** \brief The next line, without its end; the text has one more. */
+  std::string_view
+  takeLine ();
+
   std::string_view text_;
   std::string file_;
   std::size_t offset_ = 0;

@@ -122,6 +122,15 @@ TEST_F (ErkpaReconstruct, NamesFileAndLineOfBrokenText)
   expectBroken ("nothing_known.ply", "hello\n", ", line 1: ");
 }
 
+TEST_F (ErkpaReconstruct, NamesTheFirstBrokenLineOfALongText)
+{
+  std::string text = "# x y z\n\n"; // of many rows, so that threads share them
+  for (int row = 0; row < 9000; ++row)
+    text += row == 5000 || row == 8000 ? "0 0 foo\n" : row % 100 == 0 ? "\n  # a remark\n0 0 1\n" : "0 1 0\n";
+  write ("long.xyz", text);
+  expectRefuses ("long.xyz out.ply", "long.xyz, line 5103: 'foo'"); // after 5,000 rows and 102 lines that hold none
+}
+
 TEST_F (ErkpaReconstruct, NamesTheFileWithoutPointsOrBytes)
 {
   const std::vector<std::pair<std::string, std::string>> broken = {
