@@ -9,6 +9,7 @@
 #include "surface_feet.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <utility>
 
@@ -55,18 +56,24 @@ public:
   }
 
 private:
+  static constexpr int SLOTS = 8; // along each axis
+
   void
   addTo (const GridPoint &first, std::uint64_t cells)
   {
-    constexpr std::size_t RECENT = 8; // a few blocks take turns
-    const auto oldest = blocks_.end () - static_cast<std::ptrdiff_t> (std::min (RECENT, blocks_.size ()));
-    auto known = std::find_if (oldest, blocks_.end (), [&] (const BlockCells &b) { return b.first == first; });
-    if (known == blocks_.end ())
-      known = blocks_.insert (known, {first, 0});
-    known->cells |= cells;
+    const auto slot_along = [] (int v) { return static_cast<std::size_t> (v / GridBlock::SIDE & (SLOTS - 1)); };
+    std::uint32_t &slot = slots_[slot_along (first.x) + SLOTS * (slot_along (first.y) + SLOTS * slot_along (first.z))];
+    if (slot >= blocks_.size () || !(blocks_[slot].first == first))
+    {
+      slot = static_cast<std::uint32_t> (blocks_.size ());
+      blocks_.push_back ({first, 0});
+    }
+    blocks_[slot].cells |= cells;
   }
 
   Array &blocks_;
+  std::array<std::uint32_t, std::size_t (SLOTS) * SLOTS * SLOTS>
+      slots_{}; // a block seen lately, for those with its place
 };
 
 } // namespace
