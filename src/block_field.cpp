@@ -68,7 +68,10 @@ BlockField::gather (const Eigen::Vector3d &center, double extent)
   has_separations_ = faces_.gather (center_, all);
   const bool by_nearest = field_.supportSize ().kind () == SupportSize::Kind::NEAREST;
   enrichment_.gather (center_, (by_nearest ? center_radius_ + 2.0 * all : reach_) + field_.largestOffset ());
-  nodes_.copyWithin (reach_);
+  if (by_nearest)
+    nodes_.addValues ();
+  else
+    nodes_.copyWithin (reach_);
   return true;
 }
 
@@ -90,7 +93,7 @@ BlockField::findReach (const Eigen::Vector3d &center, double extent)
   double guess = 1.15 * (center_radius_ > 0.0 ? std::min (center_radius_, 2.0 * unit_) : unit_);
   for (; center.norm () < FARTHEST && guess < FARTHEST; guess *= 2.0)
   {
-    nodes_.find (center, trustedRadius (guess, extent) + extent);
+    nodes_.copyAround (center, trustedRadius (guess, extent) + extent);
     if (nodes_.count () < k)
       continue;
     center_radius_ = nodes_.boundOfKth (k, guess);

@@ -99,11 +99,26 @@ BlockNodes::copy ()
 }
 
 void
+BlockNodes::copyAround (const Eigen::Vector3d &center, double reach)
+{
+  lookAround (center, reach);
+  makeRoom (looked_for_, squared_);
+  copyColumns (reach, squared_.data ());
+}
+
+void
 BlockNodes::copyWithin (double reach)
+{
+  copyColumns (reach, nullptr);
+  addValues ();
+}
+
+void
+BlockNodes::copyColumns (double reach, float *squared)
 {
   const std::size_t room = static_cast<std::size_t> (field_.valuesPerNode ()) * looked_for_;
   lanes::Table table{};
-  lanes::Copies copies{places_.data (), {}};
+  lanes::Copies copies{places_.data (), {}, squared};
   for (std::size_t a = 0; a < 3; ++a)
   {
     makeRoom (room, positions_[a]);
@@ -116,7 +131,6 @@ BlockNodes::copyWithin (double reach)
   const Eigen::Vector3f center = center_.cast<float> ();
   count_ = search_.copyWithin (table, stretches_.data (), stretches_.size (), center.data (), limitOf (reach),
                                static_cast<float> (inverse_unit_), copies);
-  addValues ();
 }
 
 void

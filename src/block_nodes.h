@@ -31,9 +31,13 @@ public:
   void
   lookAround (const Eigen::Vector3d &center, double reach);
 
-  /** \brief The same, and find them, with their distances. */
+  /** \brief The same, and find them. */
   void
   find (const Eigen::Vector3d &center, double reach);
+
+  /** \brief The same, and copy them, without what addValues () makes; boundOfKth () may be asked then. */
+  void
+  copyAround (const Eigen::Vector3d &center, double reach);
 
   /** \brief Take those of other nodes that a predicate of their place among them chooses. */
   template <typename ChooseT>
@@ -73,11 +77,11 @@ public:
             table_.grid->coordinates (2)[place]};
   }
 
-  /** \brief A distance within which there are k of the nodes that were found, little more than that of the k-th.
+  /** \brief A distance within which there are k of the nodes that were copied, little more than that of the k-th.
    *
    * The exact one is found for every point by itself; a few counts are quicker here than a selection. It is the least
    * of fixed distances, so that it does not depend on the guess.
-   * \param[in] guess a distance within which all nodes were found, and which may do; HUGE_VAL where it does not
+   * \param[in] guess a distance within which all nodes were copied, and which may do; HUGE_VAL where it does not
    */
   double
   boundOfKth (std::size_t k, double guess) const;
@@ -89,6 +93,10 @@ public:
   /** \brief The same of those whose value points may lie within \a reach, which is not more than was looked for. */
   void
   copyWithin (double reach);
+
+  /** \brief Complete the arrays of nodes that were copied: values at the nodes, and the off-surface points. */
+  void
+  addValues ();
 
   /** \brief Make those of the nodes' positions only. */
   void
@@ -116,9 +124,9 @@ public:
   view (bool attributes) const;
 
 private:
-  /** \brief Values at the nodes, and the off-surface points. */
+  /** \param[out] squared room for the distances; nullptr where nobody asks for them */
   void
-  addValues ();
+  copyColumns (double reach, float *squared);
 
   /** \brief The square of the distance within which value points may lie within \a reach. */
   float

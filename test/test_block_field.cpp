@@ -444,7 +444,8 @@ TEST (LaneSearch, FindsThePointsWithinADistanceWithEveryInstructionSet)
       std::array<std::vector<float>, 6> copied;
       std::vector<std::uint32_t> copied_places (places.size ());
       erkpa::lanes::Table table{};
-      erkpa::lanes::Copies copies{copied_places.data (), {}};
+      std::vector<float> copied_squared (places.size ());
+      erkpa::lanes::Copies copies{copied_places.data (), {}, copied_squared.data ()};
       for (std::size_t a = 0; a < copied.size (); ++a)
       {
         copied[a].resize (places.size ());
@@ -455,6 +456,7 @@ TEST (LaneSearch, FindsThePointsWithinADistanceWithEveryInstructionSet)
                                                 2.0f, copies),
                  kept)
           << engine[e]->name;
+      EXPECT_TRUE (std::equal (squared.begin (), squared.begin () + static_cast<long> (kept), copied_squared.begin ()));
       for (std::size_t i = 0; i < kept; ++i)
         for (std::size_t a = 0; a < 3; ++a)
         {

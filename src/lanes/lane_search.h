@@ -139,6 +139,8 @@ copyLanesWithin (const Table &table, const Stretch &stretch, const float *center
     for (std::size_t a = 3; a < Table::COLUMNS; ++a)
       _mm512_storeu_ps (copies.columns[a] + kept,
                         _mm512_maskz_compress_ps (mask, _mm512_maskz_loadu_ps (lanes, table.columns[a] + first)));
+    if (copies.squared != nullptr)
+      _mm512_storeu_ps (copies.squared + kept, _mm512_maskz_compress_ps (mask, squared));
     kept += appendLanes<B> (mask, first, copies.places + kept);
   }
   return kept;
@@ -160,8 +162,9 @@ copyWithin (const Table &table, const Stretch *stretches, std::size_t count, con
     return kept;
   }
 #endif
-  const std::size_t kept = findWithin<B> ({table.columns[0], table.columns[1], table.columns[2]}, stretches, count,
-                                          center, limit, {copies.places, copies.columns[0]});
+  const std::size_t kept =
+      findWithin<B> ({table.columns[0], table.columns[1], table.columns[2]}, stretches, count, center, limit,
+                     {copies.places, copies.squared != nullptr ? copies.squared : copies.columns[0]});
   for (std::size_t a = 0; a < Table::COLUMNS; ++a)
     pick<B> (table.columns[a], copies.places, kept, copies.columns[a]);
   for (std::size_t a = 0; a < 3; ++a)

@@ -178,11 +178,13 @@ struct Table
   const float *columns[COLUMNS];
 };
 
-/** \brief The same of some of them, and their places. */
+/** \brief The same of some of them, their places, and squared distances from a center where there is an array for them.
+ */
 struct Copies
 {
   std::uint32_t *places;
   float *columns[Table::COLUMNS];
+  float *squared;
 };
 
 /** \brief A search, for the neighbourhood that evaluation points share. */
