@@ -12,10 +12,26 @@ namespace erkpa
 
 using Triangle = std::array<int, 3>;
 
+namespace
+{
+
+/** \brief Each thread gets memory of its own for the array, if that is new. */
+void
+fillInParallel (int value, int threads, LargeVector<int> &array)
+{
+  parallelRanges (array.size (), threads,
+                  [&] (std::size_t first, std::size_t last)
+                  { std::fill_n (array.begin () + static_cast<std::ptrdiff_t> (first), last - first, value); });
+}
+
+} // namespace
+
 HalfEdges::HalfEdges (LargeVector<Triangle> &&triangles, std::size_t vertex_count, int threads)
     : triangles_ (std::move (triangles)), corners_ (triangles_.empty () ? nullptr : triangles_.front ().data ()),
-      twins_ (3 * triangles_.size (), -1), outgoing_ (vertex_count, -1), places_ (vertex_count, Place::INSIDE)
+      twins_ (3 * triangles_.size ()), outgoing_ (vertex_count), places_ (vertex_count, Place::INSIDE)
 {
+  fillInParallel (-1, threads, twins_);
+  fillInParallel (-1, threads, outgoing_);
   findTwins (threads);
   findOutgoing (threads);
 }

@@ -25,6 +25,7 @@ namespace
 {
 
 constexpr std::size_t PAGE = LargePageStore::PAGE;
+constexpr bool CAN_DIVIDE = ERKPA_HAS_LARGE_PAGES; // what the system gives; memory of malloc cannot be
 
 #if ERKPA_HAS_LARGE_PAGES
 
@@ -83,29 +84,34 @@ LargePageStore::instance ()
 void *
 LargePageStore::take (std::size_t bytes)
 {
-  if (bytes > std::numeric_limits<std::size_t>::max () - 2 * PAGE)
+  if (bytes > std::numeric_limits<std::size_t>::max () / 4)
     return nullptr;
   bytes = wholePages (bytes);
-  void *const kept = takeKept (bytes);
-  return kept != nullptr ? kept : takeFromSystem (bytes);
+  if (void *const kept = takeKept (bytes); kept != nullptr)
+    return kept;
+  // More than is asked for, so that what is given up lies together; pages that are not filled take no memory.
+  constexpr std::size_t LEAST = std::size_t (1) << 26;
+  const std::size_t much = CAN_DIVIDE ? std::max (LEAST, 2 * bytes) : bytes;
+  auto *const memory = static_cast<char *> (takeFromSystem (much));
+  if (memory != nullptr && much > bytes)
+    give (memory + bytes, much - bytes);
+  return memory;
 }
 
-/** \brief From the smallest range that does. */
+/** \brief From the last range that does: systems give addresses downwards, so that it is most likely to be filled. */
 void *
 LargePageStore::takeKept (std::size_t bytes)
 {
   const std::lock_guard<std::mutex> lock (mutex_);
-  auto best = kept_.end ();
-  for (auto range = kept_.begin (); range != kept_.end (); ++range)
-    if (range->bytes >= bytes && (best == kept_.end () || range->bytes < best->bytes))
-      best = range;
-  if (best == kept_.end ())
+  const auto found = std::find_if (kept_.rbegin (), kept_.rend (), [=] (const Range &r) { return r.bytes >= bytes; });
+  if (found == kept_.rend ())
     return nullptr;
-  void *const memory = best->first;
-  best->first += bytes;
-  best->bytes -= bytes;
-  if (best->bytes == 0)
-    kept_.erase (best);
+  const auto range = found.base () - 1;
+  void *const memory = range->first;
+  range->first += bytes;
+  range->bytes -= bytes;
+  if (range->bytes == 0)
+    kept_.erase (range);
   return memory;
 }
 
@@ -121,7 +127,8 @@ LargePageStore::give (void *memory, std::size_t bytes) noexcept
 bool
 LargePageStore::tryToKeep (const Range &range) noexcept
 {
-#if ERKPA_HAS_LARGE_PAGES // memory of malloc can neither be joined nor divided
+  if (!CAN_DIVIDE)
+    return false;
   try
   {
     const std::lock_guard<std::mutex> lock (mutex_);
@@ -145,10 +152,6 @@ LargePageStore::tryToKeep (const Range &range) noexcept
   {
     return false;
   }
-#else
-  static_cast<void> (range);
-  return false;
-#endif
 }
 
 void

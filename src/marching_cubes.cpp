@@ -121,7 +121,7 @@ fillNormals (const LargeVector<Triangle> &triangles, int threads, SurfaceVertice
 LargeVector<int>
 findUsed (const LargeVector<Triangle> &triangles, std::size_t vertex_count, int threads)
 {
-  LargeVector<std::atomic<char>> is_used (vertex_count);
+  std::vector<std::atomic<char>> is_used (vertex_count);
   parallelRanges (triangles.size (), threads,
                   [&] (std::size_t first, std::size_t last)
                   {

@@ -38,10 +38,10 @@ struct SurfaceVertices
   {
     positions.resize (size);
     normals.resize (size);
-    border_offsets.resize (size);
+    border_offsets.resize (size, 0.0);
     faces.resize (has_sides ? size : 0, -1);
     side_keys.resize (has_sides ? size : 0, 0);
-    attributes.resize (size * static_cast<std::size_t> (channels));
+    attributes.resize (size * static_cast<std::size_t> (channels), 0.0f);
   }
 
   /** \brief Make room for \a size vertices, so that appending does not move the others. */

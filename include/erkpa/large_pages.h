@@ -4,6 +4,7 @@
 #include <cstddef>
 #include <limits>
 #include <new>
+#include <utility>
 #include <vector>
 
 namespace erkpa
@@ -63,7 +64,8 @@ reserveLarge (std::size_t count, VectorT &array)
 /** \brief Allocator for arrays that may become large.
  *
  * An array that is filled for the first time stops once per page for the system to give it. With pages of 4 KB that
- * took half the time of a reconstruction where a hypervisor has a say in it.
+ * took half the time of a reconstruction where a hypervisor has a say in it. For the same reason elements that come
+ * without a value, as by resize (n), are not set to zero: the threads that fill them in get the pages.
  */
 template <typename T>
 struct LargePageAllocator
@@ -89,6 +91,16 @@ struct LargePageAllocator
   deallocate (T *memory, std::size_t count) noexcept
   {
     freeLarge (memory, count * sizeof (T));
+  }
+
+  template <typename U, typename... Args>
+  void
+  construct (U *element, Args &&...args)
+  {
+    if constexpr (sizeof...(Args) == 0)
+      ::new (static_cast<void *> (element)) U;
+    else
+      ::new (static_cast<void *> (element)) U (std::forward<Args> (args)...);
   }
 
   template <typename OtherT>
