@@ -35,20 +35,18 @@ isInReach (const LocalField &local, const PolygonizerOptions &options, double vo
 void
 BlockEvaluator::evaluate (GridField &worker, const int *first_block, const int *last_block) const
 {
-  const bool is_sketched = sketchCube (worker, first_block, last_block);
-  for (const BlockPart &part : parts_)
-  {
-    if (is_sketched)
-      break;
-    worker.wanted.clear ();
-    for (const int *index = first_block; index != last_block; ++index)
+  if (!sketchCube (worker, first_block, last_block))
+    for (const BlockPart &part : parts_)
     {
-      GridBlock &block = grid_.block (*index);
-      listNodes (block, block.needed & part.nodes, worker.wanted);
+      worker.wanted.clear ();
+      for (const int *index = first_block; index != last_block; ++index)
+      {
+        GridBlock &block = grid_.block (*index);
+        listNodes (block, block.needed & part.nodes, worker.wanted);
+      }
+      if (!worker.wanted.empty ())
+        evaluateWanted (worker, first_block, last_block);
     }
-    if (!worker.wanted.empty ())
-      evaluateWanted (worker, first_block, last_block);
-  }
   for (const int *index = first_block; index != last_block; ++index)
     grid_.block (*index).needed = 0;
 }

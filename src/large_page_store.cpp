@@ -74,6 +74,20 @@ wholePages (std::size_t bytes)
 
 } // namespace
 
+bool
+LargePageStore::advise (void *memory, std::size_t bytes) noexcept
+{
+#if ERKPA_HAS_LARGE_PAGES
+  const std::size_t offset = (PAGE - reinterpret_cast<std::uintptr_t> (memory) % PAGE) % PAGE; // to where one begins
+  return bytes >= offset + PAGE &&
+         madvise (static_cast<char *> (memory) + offset, (bytes - offset) / PAGE * PAGE, MADV_HUGEPAGE) == 0;
+#else
+  static_cast<void> (memory);
+  static_cast<void> (bytes);
+  return false;
+#endif
+}
+
 LargePageStore &
 LargePageStore::instance ()
 {
@@ -91,10 +105,11 @@ LargePageStore::take (std::size_t bytes)
     return kept;
   // More than is asked for, so that what is given up lies together; pages that are not filled take no memory.
   constexpr std::size_t LEAST = std::size_t (1) << 26;
-  const std::size_t much = CAN_DIVIDE ? std::max (LEAST, 2 * bytes) : bytes;
-  auto *const memory = static_cast<char *> (takeFromSystem (much));
-  if (memory != nullptr && much > bytes)
-    give (memory + bytes, much - bytes);
+  const std::size_t much = std::max (LEAST, 2 * bytes);
+  auto *const memory = CAN_DIVIDE ? static_cast<char *> (takeFromSystem (much)) : nullptr;
+  if (memory == nullptr)
+    return takeFromSystem (bytes);
+  give (memory + bytes, much - bytes);
   return memory;
 }
 

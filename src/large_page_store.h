@@ -17,6 +17,10 @@ public:
   static LargePageStore &
   instance ();
 
+  /** \brief Ask for large pages in any memory; false where it holds none as a whole, or the system has none. */
+  static bool
+  advise (void *memory, std::size_t bytes) noexcept;
+
   /** \brief At least \a bytes that begin with a page; nullptr where there are none. */
   void *
   take (std::size_t bytes);

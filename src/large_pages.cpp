@@ -3,12 +3,7 @@
 
 #include "large_page_store.h"
 
-#ifdef __linux__
-#include <sys/mman.h>
-#endif
-
 #include <climits>
-#include <cstdint>
 #include <cstdlib>
 
 #ifdef __GLIBC__
@@ -24,22 +19,6 @@ namespace
 /** \brief From here on an array is large: a page of its own is made sooner than the small ones it would fill. */
 constexpr std::size_t LARGE = LargePageStore::PAGE / 4;
 
-/** \brief For the whole pages in a piece of memory; false where there are none, or the system has none. */
-bool
-useLargePages (void *memory, std::size_t bytes)
-{
-#if defined(MADV_HUGEPAGE) && !defined(__SANITIZE_ADDRESS__) // which has its own malloc
-  constexpr std::size_t PAGE = LargePageStore::PAGE;
-  const std::size_t offset = (PAGE - reinterpret_cast<std::uintptr_t> (memory) % PAGE) % PAGE; // to where one begins
-  return bytes >= offset + PAGE &&
-         madvise (static_cast<char *> (memory) + offset, (bytes - offset) / PAGE * PAGE, MADV_HUGEPAGE) == 0;
-#else
-  static_cast<void> (memory);
-  static_cast<void> (bytes);
-  return false;
-#endif
-}
-
 } // namespace
 
 bool
@@ -53,7 +32,7 @@ preferLargePages (std::size_t bytes)
   void *heap = std::malloc (bytes);
   if (heap == nullptr)
     return false;
-  const bool agreed = useLargePages (heap, bytes);
+  const bool agreed = LargePageStore::advise (heap, bytes);
   std::free (heap);
   return agreed;
 #else
@@ -83,7 +62,7 @@ freeLarge (void *memory, std::size_t bytes) noexcept
 void
 adviseLargePages (void *memory, std::size_t bytes) noexcept
 {
-  useLargePages (memory, bytes);
+  LargePageStore::advise (memory, bytes);
 }
 
 LargePageKeeper::LargePageKeeper ()
