@@ -67,9 +67,10 @@ giveToSystem (void *memory, std::size_t) noexcept
 #endif
 
 std::size_t
-wholePages (std::size_t bytes)
+wholeGrains (std::size_t bytes)
 {
-  return (bytes + PAGE - 1) / PAGE * PAGE;
+  constexpr std::size_t GRAIN = LargePageStore::GRAIN;
+  return (bytes + GRAIN - 1) / GRAIN * GRAIN;
 }
 
 } // namespace
@@ -100,7 +101,7 @@ LargePageStore::take (std::size_t bytes)
 {
   if (bytes > std::numeric_limits<std::size_t>::max () / 4)
     return nullptr;
-  bytes = wholePages (bytes);
+  bytes = wholeGrains (bytes);
   if (void *const kept = takeKept (bytes); kept != nullptr)
     return kept;
   // More than is asked for, so that what is given up lies together; pages that are not filled take no memory.
@@ -133,7 +134,7 @@ LargePageStore::takeKept (std::size_t bytes)
 void
 LargePageStore::give (void *memory, std::size_t bytes) noexcept
 {
-  bytes = wholePages (bytes);
+  bytes = wholeGrains (bytes);
   if (!tryToKeep ({static_cast<char *> (memory), bytes}))
     giveToSystem (memory, bytes);
 }

@@ -13,6 +13,7 @@ class LargePageStore
 {
 public:
   static constexpr std::size_t PAGE = std::size_t (1) << 21;
+  static constexpr std::size_t GRAIN = std::size_t (1) << 16; ///< arrays share pages: they take multiples of this
 
   static LargePageStore &
   instance ();
@@ -21,7 +22,7 @@ public:
   static bool
   advise (void *memory, std::size_t bytes) noexcept;
 
-  /** \brief At least \a bytes that begin with a page; nullptr where there are none. */
+  /** \brief At least \a bytes; nullptr where there are none. */
   void *
   take (std::size_t bytes);
 
@@ -37,7 +38,7 @@ public:
   release () noexcept;
 
 private:
-  /** \brief Whole pages, one after the other. */
+  /** \brief Grains, one after the other. */
   struct Range
   {
     char *first;

@@ -16,8 +16,8 @@ namespace erkpa
 namespace
 {
 
-/** \brief From here on an array is large: a page of its own is made sooner than the small ones it would fill. */
-constexpr std::size_t LARGE = LargePageStore::PAGE / 4;
+/** \brief From here on an array is large, and what it leaves of a grain is little. */
+constexpr std::size_t LARGE = 4 * LargePageStore::GRAIN;
 
 } // namespace
 
