@@ -84,7 +84,7 @@ BlockEvaluator::evaluateWanted (GridField &worker, const int *first_block, const
 }
 
 bool
-BlockEvaluator::takeMiddles (BlockField &field, CubeSketch &sketch)
+BlockEvaluator::takeMiddles (BlockField &field, CubeSketch &sketch) const
 {
   for (std::size_t i = 0; i < CubeSketch::OCTANTS; ++i)
     if (!field.addPoint (sketch.middle (i)))
@@ -92,7 +92,7 @@ BlockEvaluator::takeMiddles (BlockField &field, CubeSketch &sketch)
   field.evaluate (true);
   for (std::size_t i = 0; i < CubeSketch::OCTANTS; ++i)
   {
-    if (!field.isSettled (i) || !field.isInReach (i))
+    if (!field.isSettled (i) || !field.isInReach (i) || !BlockGroups::areCubes (field.radius (i) / grid_.voxelSize ()))
       return false;
     sketch.set (i, field.value (i), field.gradient (i));
   }
@@ -102,7 +102,9 @@ BlockEvaluator::takeMiddles (BlockField &field, CubeSketch &sketch)
 bool
 BlockEvaluator::sketchCube (GridField &worker, const int *first_block, const int *last_block) const
 {
-  constexpr double CLOSE[] = {0.15, 0.6}, NEAR = 1.3; // voxels
+  // Voxels: most sketches are off by less than half of the first. Where no node is as close, the second finds some if
+  // f = iso passes between nodes at all. Cells that it crosses have corners up to NEAR off where f is about a distance.
+  constexpr double CLOSE = 0.15, LESS_CLOSE = 0.6, NEAR = 1.3;
   const auto is_known = [this] (int block) { return grid_.block (block).known != 0; };
   if (!sketches_ || last_block - first_block != static_cast<std::ptrdiff_t> (CubeSketch::OCTANTS) ||
       std::any_of (first_block, last_block, is_known))
@@ -114,10 +116,11 @@ BlockEvaluator::sketchCube (GridField &worker, const int *first_block, const int
       !takeMiddles (worker.block, sketch))
     return false;
   const double unit = grid_.voxelSize () * sketch.steepest ();
-  for (const double close : CLOSE)
+  for (const double close : {CLOSE, LESS_CLOSE})
   {
     fillIn (sketch, close * unit, first_block, last_block, worker);
-    if (evaluateClose (worker, 0.5 * close * unit))
+    const bool is_tested = close == LESS_CLOSE || !worker.wanted.empty ();
+    if (is_tested && evaluateClose (worker, 0.5 * close * unit))
       return true;
   }
   for (const int *index = first_block; index != last_block; ++index)
@@ -144,6 +147,7 @@ BlockEvaluator::fillIn (const CubeSketch &sketch, double close, const int *first
   for (const int *index = first_block; index != last_block; ++index)
   {
     GridBlock &block = grid_.block (*index);
+    block.forget ();
     for (int row = 0; row < GridBlock::NODES; row += GridBlock::SIDE)
     {
       const Eigen::Vector3d x = grid_.position (SparseGrid::pointAt (block, row));
@@ -174,7 +178,7 @@ BlockEvaluator::evaluateClose (GridField &worker, double most) const
     const WantedNode &node = worker.wanted[i];
     const double value = field.value (i) - options_.iso_level;
     const double sketched = static_cast<double> (node.block->values[static_cast<std::size_t> (node.node)]);
-    if (!(std::abs (value - sketched) <= most) || !field.isInReach (i))
+    if (field.isUnsettled (i) || !(std::abs (value - sketched) <= most) || !field.isInReach (i))
       return false;
     node.block->setValueAgain (node.node, static_cast<float> (value));
   }

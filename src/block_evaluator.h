@@ -55,7 +55,7 @@ public:
   {
   }
 
-  /** \brief Whether whole cubes (BlockGroups) are asked for at best. */
+  /** \brief Whether sketches may serve: it is best then to ask for all blocks of a cube (BlockGroups). */
   static bool
   canSketch (const ImplicitField &field, double voxel_size)
   {
@@ -89,9 +89,10 @@ private:
   bool
   sketchCube (GridField &worker, const int *first_block, const int *last_block) const;
 
-  /** \brief Take f and its gradients in the middles of the octants; false where they are undefined or out of reach. */
-  static bool
-  takeMiddles (BlockField &field, CubeSketch &sketch);
+  /** \brief Take f and its gradients in the middles of the octants; false where they are undefined, out of
+   * reach, or of supports that are not that large. */
+  bool
+  takeMiddles (BlockField &field, CubeSketch &sketch) const;
 
   /** \brief Take back the values of a block's nodes; those up to \a most are to be evaluated. */
   static void

@@ -15,7 +15,7 @@ class BlockGroups
 public:
   static constexpr int CUBE = 2; ///< blocks along the side of a cube
 
-  /** \brief Whether supports are that large. */
+  /** \brief Whether supports are so large beside voxels that the blocks in a cube share a gathering. */
   static bool
   areCubes (double support)
   {

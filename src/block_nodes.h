@@ -77,7 +77,7 @@ public:
             table_.grid->coordinates (2)[place]};
   }
 
-  /** \brief A distance within which there are k of the nodes that were copied, little more than that of the k-th.
+  /** \brief A distance within which there are k of the nodes of copyAround (), little more than that of the k-th.
    *
    * The exact one is found for every point by itself; a few counts are quicker here than a selection. It is the least
    * of fixed distances, so that it does not depend on the guess.

@@ -12,7 +12,15 @@
 #include <limits>
 
 // AddressSanitizer has its own malloc, which finds more.
-#if defined(MADV_HUGEPAGE) && !defined(__SANITIZE_ADDRESS__)
+#ifdef __has_feature
+#define ERKPA_HAS_SANITIZER __has_feature (address_sanitizer)
+#elif defined(__SANITIZE_ADDRESS__)
+#define ERKPA_HAS_SANITIZER 1
+#else
+#define ERKPA_HAS_SANITIZER 0
+#endif
+
+#if defined(MADV_HUGEPAGE) && !ERKPA_HAS_SANITIZER
 #define ERKPA_HAS_LARGE_PAGES 1
 #else
 #define ERKPA_HAS_LARGE_PAGES 0
@@ -108,10 +116,27 @@ LargePageStore::take (std::size_t bytes)
   constexpr std::size_t LEAST = std::size_t (1) << 26;
   const std::size_t much = std::max (LEAST, 2 * bytes);
   auto *const memory = CAN_DIVIDE ? static_cast<char *> (takeFromSystem (much)) : nullptr;
-  if (memory == nullptr)
-    return takeFromSystem (bytes);
-  give (memory + bytes, much - bytes);
-  return memory;
+  if (memory != nullptr)
+  {
+    give (memory + bytes, much - bytes);
+    return memory;
+  }
+  if (void *const least = takeFromSystem (bytes); least != nullptr)
+    return least;
+  dropKept (); // of which no range was large enough
+  return takeFromSystem (bytes);
+}
+
+void
+LargePageStore::dropKept () noexcept
+{
+  std::vector<Range> dropped;
+  {
+    const std::lock_guard<std::mutex> lock (mutex_);
+    dropped.swap (kept_);
+  }
+  for (const Range &range : dropped)
+    giveToSystem (range.first, range.bytes);
 }
 
 /** \brief From the last range that does: systems give addresses downwards, so that it is most likely to be filled. */
@@ -180,14 +205,13 @@ LargePageStore::keep ()
 void
 LargePageStore::release () noexcept
 {
-  std::vector<Range> given_up;
+  bool is_last = false;
   {
     const std::lock_guard<std::mutex> lock (mutex_);
-    if (--keepers_ == 0)
-      given_up.swap (kept_);
+    is_last = --keepers_ == 0;
   }
-  for (const Range &range : given_up)
-    giveToSystem (range.first, range.bytes);
+  if (is_last)
+    dropKept ();
 }
 
 } // namespace erkpa

@@ -48,6 +48,10 @@ private:
   void *
   takeKept (std::size_t bytes);
 
+  /** \brief Give the system what is kept. */
+  void
+  dropKept () noexcept;
+
   bool
   tryToKeep (const Range &range) noexcept;
 

@@ -282,6 +282,7 @@ polygonize (const ImplicitField &field, const PolygonizerOptions &options, Trian
 {
   mesh.clear ();
   report = PolygonizerReport ();
+  const LargePageKeeper keeper;
   Outcome outcome = checkOptions (options);
   if (!outcome.ok ())
     return outcome;

@@ -59,13 +59,14 @@ struct GridBlock
   std::uint64_t needed = 0;           ///< nodes whose value is asked for
   std::uint64_t inside = 0;           ///< known nodes with f < iso
   std::uint64_t undefined = 0;        ///< known nodes where f is undefined
-  std::uint64_t near = 0;             ///< known nodes that are in reach of the data
+  std::uint64_t near = 0;             ///< known nodes that are in reach of the data, or sketched where it is
   std::uint64_t visited = 0;          ///< cells that were or will be looked at
   std::uint64_t next = 0;             ///< cells that will be looked at in the next front
   std::uint64_t fresh = 0;            ///< cells that are in this one
   std::uint64_t active = 0;           ///< cells that the surface crosses
   std::array<std::uint64_t, 3> cut{}; ///< per axis: edges from a node that carry a vertex
-  std::array<float, NODES> values;    ///< of known nodes: f - iso, NaN where f is undefined
+  std::array<float, NODES>
+      values; ///< of known nodes: f - iso, or about that where it is sketched; NaN where f is undefined
 
   /** \brief Take up the value of a node. */
   void

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Where SurfaceTracker starts: at the nodes, and at their feet on the surface where that runs elsewhere.
+// Where SurfaceTracker starts: at the nodes, beside them, and at their feet on the surface where that runs elsewhere.
 #include "surface_tracking.h"
 
 #include "grid_bits.h"
@@ -72,8 +72,8 @@ private:
   }
 
   Array &blocks_;
-  std::array<std::uint32_t, std::size_t (SLOTS) * SLOTS * SLOTS>
-      slots_{}; // a block seen lately, for those with its place
+  /** \brief Per place modulo SLOTS the block seen last. */
+  std::array<std::uint32_t, std::size_t (SLOTS) * SLOTS * SLOTS> slots_{};
 };
 
 } // namespace

@@ -159,9 +159,9 @@ SurfaceTracker::evaluateRequested ()
   constexpr std::size_t FEW = 8;
   if (evaluated_blocks_ == 0)
     foresees_ = nodeCount () < FEW * requested_blocks_.size ();
-  const std::size_t block_count = requested_blocks_.size ();
   if (BlockEvaluator::canSketch (field_, grid_.voxelSize ()))
     requestCubes ();
+  const std::size_t block_count = requested_blocks_.size ();
   const BlockEvaluator evaluator (field_, options_, grid_, foresees_);
   const BlockGroups groups (grid_, std::move (requested_blocks_), field_.typicalRadius () / grid_.voxelSize ());
   // In slices, so that progress shows during the first front, which is the largest by far.

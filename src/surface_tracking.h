@@ -16,11 +16,11 @@
 namespace erkpa
 {
 
-/** \brief Finds the cells that the surface crosses by following it from the cells of the nodes.
+/** \brief Finds the cells that the surface crosses by following it from the cells of the nodes and those beside them.
  *
- * Works in fronts: the corner values a front needs are evaluated together, block by block, each once; then every
- * crossed cell hands the front on through the faces that the surface passes. Which cells are crossed does not depend
- * on the order, so that a front is a set of blocks, and the cells of a block are looked at together, as bits.
+ * Works in fronts: the corner values a front needs are found together, block by block (BlockEvaluator), each once; then
+ * every crossed cell hands the front on through the faces that the surface passes. Which cells are crossed does not
+ * depend on the order, so that a front is a set of blocks, and the cells of a block are looked at together, as bits.
  */
 class SurfaceTracker
 {
@@ -93,7 +93,10 @@ private:
   GridPoint
   cellOfPlace (std::size_t place) const;
 
-  /** \brief The faces of a node's cell beyond which its tangent plane goes on, as bits. */
+  /** \brief The faces of a node's cell beyond which its tangent plane goes on, as bits.
+   *
+   * Starting there as well spares fronts that ask many blocks for a few nodes each.
+   */
   unsigned
   facesOfPlane (std::size_t place, const GridPoint &cell) const;
 

@@ -22,7 +22,7 @@ namespace
 constexpr double TOLERANCE = 1e-4; // of a voxel, along the edge
 constexpr double MARGIN = 1e-3;    // of a voxel: a vertex keeps this far from the grid nodes, or triangles degenerate
 constexpr int MAX_STEPS = 12;
-constexpr double LEAST_SHORT = 0.03; // of a voxel: a last step
+constexpr double LEAST_SHORT = 0.03, MOST_SHORT = 0.1; // of a voxel: steps after which nobody looks where they lead
 
 /** \brief An edge of the grid on which f - iso changes its sign, and what is known of the root on it. */
 struct EdgeRoot
@@ -92,7 +92,8 @@ public:
                 SurfaceVertices &vertices)
       : options_ (options), grid_ (grid), vertices_ (vertices),
         parts_ (partsOfBlock (field.typicalRadius () / grid.voxelSize ())),
-        short_step_ (std::max (LEAST_SHORT, std::sqrt (2.0 * TOLERANCE * field.typicalRadius () / grid.voxelSize ())))
+        short_step_ (std::clamp (std::sqrt (2.0 * TOLERANCE * field.typicalRadius () / grid.voxelSize ()), LEAST_SHORT,
+                                 MOST_SHORT))
   {
   }
 

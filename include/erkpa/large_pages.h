@@ -82,6 +82,7 @@ struct LargePageAllocator
   T *
   allocate (std::size_t count)
   {
+    static_assert (alignof (T) <= alignof (std::max_align_t), "malloc aligns no more");
     if (count > std::numeric_limits<std::size_t>::max () / sizeof (T))
       throw std::bad_alloc ();
     return static_cast<T *> (allocateLarge (count * sizeof (T)));
@@ -118,7 +119,7 @@ struct LargePageAllocator
   }
 };
 
-/** \brief A std::vector that may become large. */
+/** \brief A std::vector that may become large. resize (n) leaves new numbers unset, resize (n, value) sets them. */
 template <typename T>
 using LargeVector = std::vector<T, LargePageAllocator<T>>;
 

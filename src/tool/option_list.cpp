@@ -159,7 +159,7 @@ describeMeshing (const PolygonizerOptions &polygonizer)
        "without, "
        "normals point outwards)") //
       ("threads", word ("N"),
-       withDefault ("number of threads; the mesh does not depend on it", polygonizer.threads,
+       withDefault ("number of threads, but for reading text; the mesh does not depend on it", polygonizer.threads,
                     "all processors")
            .c_str ()) //
       ("evaluate", new TwoFiles,

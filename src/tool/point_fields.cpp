@@ -104,19 +104,37 @@ appendNormals (const std::vector<Eigen::Vector3d> &normals, pcl::PCLPointCloud2 
   cloud.data.swap (data);
 }
 
+namespace
+{
+
+constexpr std::size_t STRETCH = 2048; // rows that one thread reads at a time
+
+/** \brief Passes over rows, up to the end or \a most of them.
+ * \param[out] rows how many there were
+ * \return where each stretch of them begins; the last one may have none
+ */
+std::vector<TextScanner>
+findStretches (TextScanner &scanner, std::size_t most, std::size_t &rows)
+{
+  std::vector<TextScanner> stretches{scanner};
+  for (rows = 0; rows < most && scanner.skipRow ();)
+    if (++rows % STRETCH == 0)
+      stretches.push_back (scanner);
+  return stretches;
+}
+
+} // namespace
+
 std::size_t
 readRows (TextScanner &scanner, std::size_t most, pcl::PCLPointCloud2 &cloud)
 {
-  constexpr std::size_t STRETCH = 2048;
-  std::vector<TextScanner> stretches; // where each begins; the last one may have no rows
   std::size_t rows = 0;
-  do
-  {
-    if (rows % STRETCH == 0)
-      stretches.push_back (scanner);
-  } while (rows < most && scanner.skipRow () && ++rows > 0);
-  cloud.data.resize (rows * cloud.point_step);
+  std::vector<TextScanner> stretches = findStretches (scanner, most, rows);
   const std::size_t columns = columnsOf (cloud);
+  TextScanner first = stretches.front ();
+  if (std::vector<std::string_view> tokens; rows > 0 && first.nextRow (tokens))
+    first.requireColumns (tokens, columns); // before a broken header makes room for points that are none
+  cloud.data.resize (rows * cloud.point_step);
   const auto read = [&] (std::vector<std::string_view> &tokens, std::size_t i)
   {
     TextScanner &stretch = stretches[i];

@@ -25,7 +25,9 @@ public:
   bool
   nextRow (std::vector<std::string_view> &tokens);
 
-  /** \brief Pass over what nextRow would split. */
+  /** \brief Pass over what nextRow would split.
+   * \return false at the end of the text
+   */
   bool
   skipRow ();
 
