@@ -137,12 +137,12 @@ SurfaceTracker::requestCubes ()
   cubes.erase (std::unique (cubes.begin (), cubes.end ()), cubes.end ());
   for (const auto &[z, y, x] : cubes)
   {
-    std::array<int, 8> blocks{};
+    std::array<int, CubeSketch::OCTANTS> blocks{};
     std::uint64_t known = 0;
-    for (int corner = 0; corner < 8; ++corner)
+    for (std::size_t octant = 0; octant < blocks.size (); ++octant)
     {
-      const GridPoint by = cornerOffset (corner);
-      int &block = blocks[static_cast<std::size_t> (corner)];
+      const GridPoint by = cornerOffset (static_cast<int> (octant));
+      int &block = blocks[octant];
       block = grid_.placeBlock ({x + GridBlock::SIDE * by.x, y + GridBlock::SIDE * by.y, z + GridBlock::SIDE * by.z});
       known |= grid_.block (block).known;
     }
