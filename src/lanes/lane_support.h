@@ -2,7 +2,8 @@
 #pragma once
 
 #include "lane_nearest.h"
-#include "lane_search.h"
+#include "lane_packing.h"
+#include "lanes.h"
 
 namespace erkpa::lanes
 {
@@ -203,15 +204,13 @@ private:
       const B d[] = {B::load_unaligned (nodes_->x + first) - B (middle[0]),
                      B::load_unaligned (nodes_->y + first) - B (middle[1]),
                      B::load_unaligned (nodes_->z + first) - B (middle[2])};
-      const B margin = limit - squaredLength (d);
-#ifdef __AVX512F__
-      if constexpr (IS_WIDEST<B>)
-        closeUpWhere (margin, first, value_points - first, from, arrays, to, listed_);
-#endif
-      listed_ += appendWhere (margin, first, value_points - first, list_ + listed_);
+      const std::size_t left = value_points - first;
+      const Packing<B> packing (limit - squaredLength (d), left);
+      for (std::size_t a = 0; a < arrays; ++a)
+        packing.pack (Packing<B>::load (from[a] + first, left), to[a] + listed_);
+      packing.packNumbers (first, list_ + listed_);
+      listed_ += packing.size ();
     }
-    for (std::size_t a = 0; a < (IS_WIDEST<B> ? 0 : arrays); ++a)
-      pick<B> (from[a], list_, listed_, to[a]);
     for (on_surface_ = listed_; on_surface_ > 0 && list_[on_surface_ - 1] >= nodes_->on_surface;)
       --on_surface_;
   }
