@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "block_evaluator.h"
 
+#include "grid_bits.h"
+
 #include <Eigen/Geometry>
 
 #include <algorithm>
@@ -232,8 +234,9 @@ BlockEvaluator::nodesNear (const GridBlock &block, const FieldSketch &sketch) co
 void
 BlockEvaluator::listNodes (GridBlock &block, std::uint64_t nodes, std::vector<WantedNode> &list)
 {
-  for (; nodes != 0; nodes &= nodes - 1)
-    list.push_back ({&block, __builtin_ctzll (nodes)});
+  for (const std::uint64_t octant : grid_bits::OCTANTS)
+    for (std::uint64_t left = nodes & octant; left != 0; left &= left - 1)
+      list.push_back ({&block, __builtin_ctzll (left)});
 }
 
 /** \brief After the points that are there. */

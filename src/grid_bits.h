@@ -72,6 +72,23 @@ atCorners (std::array<std::uint64_t, 8> nodes)
   return nodes;
 }
 
+/** \brief The octants of a block one after the other, each with one before it that shares a face with it. */
+constexpr std::array<std::uint64_t, 8>
+octants ()
+{
+  constexpr std::uint64_t FIRST_OCTANT = 0x330033u;
+  std::array<std::uint64_t, 8> octants{};
+  for (unsigned i = 0; i < 8; ++i)
+  {
+    const unsigned place = i ^ i >> 1; // Gray code
+    octants[i] =
+        FIRST_OCTANT << ((place & 1) * 2 * SHIFT[0] + (place >> 1 & 1) * 2 * SHIFT[1] + (place >> 2) * 2 * SHIFT[2]);
+  }
+  return octants;
+}
+
+constexpr std::array<std::uint64_t, 8> OCTANTS = octants ();
+
 } // namespace grid_bits
 
 } // namespace erkpa

@@ -4,6 +4,7 @@
 #include "block_evaluator.h"
 #include "block_groups.h"
 #include "crease_solver.h"
+#include "grid_bits.h"
 #include "threads.h"
 
 #include <Eigen/Geometry>
@@ -135,14 +136,16 @@ private:
   void
   listRoots (const GridBlock &block, std::uint64_t nodes, std::vector<EdgeRoot> &roots) const
   {
-    for (int axis = 0; axis < 3; ++axis)
-      for (std::uint64_t left = block.cut[static_cast<std::size_t> (axis)] & nodes; left != 0; left &= left - 1)
-      {
-        const int node = __builtin_ctzll (left);
-        const GridPlace high = grid_.step ({block.above[0], node}, 1 << axis);
-        roots.emplace_back (block, node, axis, block.values[static_cast<std::size_t> (node)],
-                            grid_.block (high.block).values[static_cast<std::size_t> (high.local)]);
-      }
+    for (const std::uint64_t octant : grid_bits::OCTANTS)
+      for (int axis = 0; axis < 3; ++axis)
+        for (std::uint64_t left = block.cut[static_cast<std::size_t> (axis)] & nodes & octant; left != 0;
+             left &= left - 1)
+        {
+          const int node = __builtin_ctzll (left);
+          const GridPlace high = grid_.step ({block.above[0], node}, 1 << axis);
+          roots.emplace_back (block, node, axis, block.values[static_cast<std::size_t> (node)],
+                              grid_.block (high.block).values[static_cast<std::size_t> (high.local)]);
+        }
   }
 
   Eigen::Vector3d
