@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <xsimd/xsimd.hpp>
+#include "lane_vector.h"
 
 #include <cstddef>
 
@@ -21,14 +21,32 @@ public:
   /** \param[in] rows a row for each node, its squared distances from the points */
   LaneNearest (const float *rows, std::size_t count, float k) : rows_ (rows), count_ (count), k_ (k) {}
 
+  /** \brief How many of the rows are at most \a squared.
+   *
+   * In four sums, since one would wait for itself.
+   */
+  B
+  countWithin (B squared) const
+  {
+    LaneCount<B> counts[4];
+    std::size_t i = 0;
+    for (; i + 4 <= count_; i += 4)
+      for (std::size_t j = 0; j < 4; ++j)
+        counts[j].add (row (i + j) <= squared);
+    for (; i < count_; ++i)
+      counts[0].add (row (i) <= squared);
+    return (counts[0].count () + counts[1].count ()) + (counts[2].count () + counts[3].count ());
+  }
+
   /** \param[in] bound squared distance within which the k-th is expected
-   * \param[in] guess about its square
+   * \param[in] in_bound how many there are
+   * \param[in] guess about the square of the k-th
    */
   void
-  find (B bound, B guess)
+  find (B bound, B in_bound, B guess)
   {
     constexpr int STEPS = 10, EVEN = 5;
-    B low (0.0f), high = bound, in_low (0.0f), in_high = countWithin (high), middle = xsimd::min (guess, high);
+    B low (0.0f), high = bound, in_low (0.0f), in_high = in_bound, middle = xsimd::min (guess, high);
     const B k (k_), enough (k_ + static_cast<float> (LARGEST - 1)), wanted (k_ + 0.5f * static_cast<float> (LARGEST));
     for (int step = 0; step < STEPS && xsimd::any (in_high > enough); ++step)
     {
@@ -69,25 +87,6 @@ private:
   row (std::size_t i) const
   {
     return B::load_unaligned (rows_ + WIDTH * i);
-  }
-
-  /** \brief How many of the rows are at most \a squared.
-   *
-   * In four sums, since one would wait for itself.
-   */
-  B
-  countWithin (B squared) const
-  {
-    const B one (1.0f);
-    B counts[4] = {B (0.0f), B (0.0f), B (0.0f), B (0.0f)};
-    const auto add = [&] (std::size_t i, B &count) { count = xsimd::select (row (i) <= squared, count + one, count); };
-    std::size_t i = 0;
-    for (; i + 4 <= count_; i += 4)
-      for (std::size_t j = 0; j < 4; ++j)
-        add (i + j, counts[j]);
-    for (; i < count_; ++i)
-      add (i, counts[0]);
-    return (counts[0] + counts[1]) + (counts[2] + counts[3]);
   }
 
   /** \brief The largest of the rows within a bound, or the next one, or that after it, by their number above. */

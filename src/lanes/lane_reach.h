@@ -32,14 +32,14 @@ public:
   count (B squared)
   {
     countOffSurface (squared);
-    in_quarter_ = xsimd::select (squared <= squared_reach_, in_quarter_ + B (1.0f), in_quarter_);
+    in_quarter_.add (squared <= squared_reach_);
     nearest_ = xsimd::min (nearest_, squared);
   }
 
   void
   countOffSurface (B squared)
   {
-    in_support_ = xsimd::select (squared < squared_radius_, in_support_ + B (1.0f), in_support_);
+    in_support_.add (squared < squared_radius_);
   }
 
   /** \brief The nodes counted so far were all of those on the surface. */
@@ -53,21 +53,21 @@ public:
   B
   supportNodes () const
   {
-    return in_support_;
+    return in_support_.count ();
   }
 
   Mask
   isDefined () const
   {
-    return in_support_ >= B (min_nodes_);
+    return in_support_.count () >= B (min_nodes_);
   }
 
   /** \brief Whether the data supports a surface here: see Settings::reach. */
   Mask
   isInReach () const
   {
-    const B quarter = xsimd::floor (on_surface_ * B (0.25f));
-    return in_quarter_ > quarter || nearest_ <= B (near_enough_);
+    const B quarter = xsimd::floor (on_surface_.count () * B (0.25f));
+    return in_quarter_.count () > quarter || nearest_ <= B (near_enough_);
   }
 
   B
@@ -79,7 +79,7 @@ public:
 private:
   float min_nodes_, near_enough_;
   B squared_radius_, squared_reach_;
-  B in_support_ = B (0.0f), on_surface_ = B (0.0f), in_quarter_ = B (0.0f);
+  LaneCount<B> in_support_, on_surface_, in_quarter_;
   B nearest_ = B (3e38f);
 };
 

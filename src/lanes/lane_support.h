@@ -5,6 +5,9 @@
 #include "lane_packing.h"
 #include "lanes.h"
 
+#include <algorithm>
+#include <cmath>
+
 namespace erkpa::lanes
 {
 
@@ -37,7 +40,7 @@ public:
     kth_ = radius_ * radius_;
     at_limit_ = short_ = B (0.0f);
     if (settings.k > 0)
-      findNearest (B::load_unaligned (points.guess + first));
+      findNearest (B::load_unaligned (points.guess + first), first == 0);
     inverse_ = B (1.0f) / radius_;
   }
 
@@ -45,7 +48,10 @@ public:
   static void
   listNodes (LaneSupport *supports, std::size_t count)
   {
-    supports[0].listWithin (supports, count, supports[0].nodes_->count, Scratch::COLUMNS);
+    if (supports[0].lists_all_)
+      supports[0].keepSupporting ();
+    else
+      supports[0].listWithin (supports, count, supports[0].nodes_->count, Scratch::COLUMNS);
     for (std::size_t s = 1; s < count; ++s)
     {
       supports[s].listed_ = supports[0].listed_;
@@ -254,14 +260,39 @@ private:
       reach = one > reach ? one : reach;
   }
 
-  /** \brief ε = distance to the k-th node, from a bound of it and a guess. */
+  /** \brief ε = distance to the k-th node, from a bound of it and a guess.
+   *
+   * The bound holds anywhere; mostly, what the points before were found to need and a little more does as well.
+   */
   void
-  findNearest (B guess)
+  findNearest (B guess, bool is_first)
   {
-    listWithin (this, 1, nodes_->on_surface, 3);
-    measureDistances ();
-    LaneNearest<B> nearest (rows_, listed_, k_);
-    nearest.find (radius_ * radius_ * B (1.0f + 1e-5f), guess * guess);
+    constexpr float MORE = 1.1f, MORE_THAN_GUESS = 1.25f, ROUNDING = 1e-5f;
+    lists_all_ = nodes_->on_surface == nodes_->count;
+    const B limit = radius_, k (k_);
+    if (is_first)
+      expected_ = guess * guess;
+    radius_ = xsimd::min (limit, is_first ? guess * B (MORE_THAN_GUESS) : B (MORE * largest_));
+    for (;;)
+    {
+      listWithin (this, 1, nodes_->on_surface, lists_all_ ? Scratch::COLUMNS : 3);
+      measureDistances ();
+      LaneNearest<B> nearest (rows_, listed_, k_);
+      const B bound = radius_ * radius_ * B (1.0f + ROUNDING), in_bound = nearest.countWithin (bound);
+      if (xsimd::any (in_bound < k && radius_ < limit))
+      {
+        radius_ = limit;
+        continue;
+      }
+      nearest.find (bound, in_bound, expected_);
+      take (nearest, limit);
+      return;
+    }
+  }
+
+  void
+  take (const LaneNearest<B> &nearest, B limit)
+  {
     kth_ = nearest.squared ();
     const auto has_fewer = nearest.found () < B (k_);
     if (!is_limited_)
@@ -269,9 +300,38 @@ private:
     else
     {
       at_limit_ = xsimd::select (has_fewer, B (1.0f), B (0.0f));
-      kth_ = xsimd::select (has_fewer, radius_ * radius_, kth_);
+      kth_ = xsimd::select (has_fewer, limit * limit, kth_);
     }
     radius_ = xsimd::sqrt (kth_);
+    float squares[WIDTH], sum = 0.0f, largest = 0.0f;
+    kth_.store_unaligned (squares);
+    for (const float square : squares)
+    {
+      sum += square;
+      largest = std::max (largest, square);
+    }
+    expected_ = B (sum / static_cast<float> (WIDTH));
+    largest_ = std::sqrt (largest);
+  }
+
+  /** \brief Of the nodes listed to find the k-th, only those in the support of some lane stay, and the k-th. */
+  void
+  keepSupporting ()
+  {
+    std::size_t kept = 0;
+    for (std::size_t first = 0; first < listed_; first += WIDTH)
+    {
+      unsigned lanes = 0;
+      for (std::size_t i = first; i < std::min (listed_, first + WIDTH); ++i)
+        lanes |= (xsimd::any (B::load_unaligned (rows_ + WIDTH * i) <= kth_) ? 1u : 0u) << (i - first);
+      const Packing<B> packing (lanes);
+      for (std::size_t column = 0; column < Scratch::COLUMNS; ++column)
+        if (near (column) != nullptr)
+          packing.pack (B::load_unaligned (near_[column] + first), near_[column] + kept);
+      packing.pack (list_ + first, list_ + kept);
+      kept += packing.size ();
+    }
+    on_surface_ = listed_ = kept;
   }
 
   const Nodes *nodes_;
@@ -285,6 +345,9 @@ private:
   B radius_, inverse_, kth_;
   B at_limit_; // 1 where ε is Points::radius
   B short_;    // 1 where it is beyond
+  bool lists_all_ = false; // the list was made for the k-th node, and holds those in the support
+  B expected_;             // ε² of the points before, in the mean
+  float largest_;          // ε of them at most
 };
 
 } // namespace erkpa::lanes

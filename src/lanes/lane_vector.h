@@ -54,4 +54,39 @@ dot (const B *a, const B *b)
   return xsimd::fma (a[2], b[2], xsimd::fma (a[1], b[1], a[0] * b[0]));
 }
 
+/** \brief Counts, lane by lane, how often something holds; fewer than 2^24 times. */
+template <typename B>
+class LaneCount
+{
+public:
+  using Mask = decltype (B () < B ());
+
+  void
+  add (const Mask &holds)
+  {
+#if defined(__AVX2__) && !defined(__AVX512F__)
+    counts_ = _mm256_sub_epi32 (counts_, _mm256_castps_si256 (holds)); // a lane of the mask is -1
+#else
+    counts_ = xsimd::select (holds, counts_ + B (1.0f), counts_);
+#endif
+  }
+
+  B
+  count () const
+  {
+#if defined(__AVX2__) && !defined(__AVX512F__)
+    return _mm256_cvtepi32_ps (counts_);
+#else
+    return counts_;
+#endif
+  }
+
+private:
+#if defined(__AVX2__) && !defined(__AVX512F__)
+  __m256i counts_ = _mm256_setzero_si256 ();
+#else
+  B counts_ = B (0.0f);
+#endif
+};
+
 } // namespace erkpa::lanes
