@@ -15,7 +15,8 @@ namespace erkpa
 BlockFaces::BlockFaces (const ImplicitField &field, const lanes::Engine &engine, const lanes::Settings &settings,
                         double unit)
     : field_ (field), engine_ (engine), settings_ (settings), unit_ (unit), groups_ (field.faces ()),
-      all_ (field, engine, unit), of_part_ (field, engine, unit), at_part_ (0, termsOf (settings.basis), true)
+      all_ (field, engine, unit), near_points_ (field, engine, unit), of_part_ (field, engine, unit),
+      at_part_ (0, termsOf (settings.basis), true)
 {
 }
 
@@ -29,38 +30,55 @@ bool
 BlockFaces::gather (const Eigen::Vector3d &center, double extent)
 {
   center_ = center;
-  extent_ = extent;
-  has_nodes_ = false;
+  reach_of_parts_ = reach_of_voters_ = 0.0;
   return groups_.gather (center, extent);
 }
 
-/** \brief All nodes that fits to parts of them can reach: see Support::gatherForParts (). */
+/** \brief All nodes that fits to parts of them can reach at some points: see Support::gatherForParts (). */
 void
-BlockFaces::gatherNodes (double radius)
+BlockFaces::gatherNodes (const std::vector<std::uint32_t> &which, const BlockPoints &points)
 {
-  if (has_nodes_)
+  constexpr double SPARE = 1.02; // for where the points move to
+  double of_parts = 0.0, of_voters = 0.0;
+  for (const std::uint32_t point : which)
+  {
+    if (points.states[point] != lanes::State::DEFINED)
+      continue;
+    const auto away = static_cast<double> (points.position (point).norm ());
+    const auto radius = static_cast<double> (points.radii[point]);
+    of_parts = std::max (of_parts, unit_ * (Support::PART_REACH * radius + away));
+    of_voters = std::max (of_voters, unit_ * (FaceGroups::REACH * radius + away));
+  }
+  if (of_parts <= reach_of_parts_ && of_voters <= reach_of_voters_)
     return;
-  all_.find (center_, Support::PART_REACH * (radius + extent_) + extent_);
-  all_.copyPositions ();
+  reach_of_parts_ = SPARE * of_parts;
+  reach_of_voters_ = SPARE * of_voters;
+  all_.find (center_, reach_of_parts_);
   groups_.assign (all_.count (), [this] (std::size_t i) { return all_.node (i); });
-  has_nodes_ = true;
+  slots_.clear ();
+  const auto is_near = [&, limit = static_cast<float> (reach_of_voters_ * reach_of_voters_)] (std::size_t i)
+  {
+    const bool is_in_reach = all_.squaredDistance (i) <= limit;
+    if (is_in_reach)
+      slots_.push_back (static_cast<int> (i));
+    return is_in_reach;
+  };
+  near_points_.select (all_, is_near);
+  near_points_.copyPositions ();
 }
 
 void
-BlockFaces::combine (const lanes::Settings &settings, double radius, const std::vector<std::uint32_t> &which,
-                     BlockPoints &points)
+BlockFaces::combine (const lanes::Settings &settings, const std::vector<std::uint32_t> &which, BlockPoints &points)
 {
   settings_ = settings;
   settings_.k = Support::neighborsOfPart (settings.k);
   settings_.limited = true;
-  gatherNodes (radius);
+  gatherNodes (which, points);
   if (groups_.present () > MAX_PRESENT)
     for (const std::uint32_t point : which)
       points.states[point] = lanes::State::UNSETTLED;
   combined_.assign (which.size (), Combined ());
-  for (std::vector<float> &along : voters_)
-    along.clear ();
-  weights_.clear ();
+  listed_ = 0;
   parts_.clear ();
   for (std::size_t i = 0; i < which.size (); ++i)
     askForParts (points, which[i], combined_[i]);
@@ -74,12 +92,23 @@ void
 BlockFaces::listNear (const Eigen::Vector3f &x, float radius)
 {
   const auto reach = static_cast<float> (FaceGroups::REACH) * radius;
-  const lanes::Cloud cloud{all_.coordinates (0), all_.coordinates (1), all_.coordinates (2)};
-  const lanes::Stretch all{0, static_cast<std::uint32_t> (all_.count ())};
-  near_.resize (all_.count () + lanes::MAX_WIDTH);
-  squared_.resize (near_.size ());
-  near_.resize (engine_.search->findWithin (cloud, &all, 1, x.data (), reach * reach,
-                                            {reinterpret_cast<std::uint32_t *> (near_.data ()), squared_.data ()}));
+  const std::size_t room = near_points_.count () + lanes::MAX_WIDTH;
+  lanes::Table table{};
+  lanes::Copies copies{};
+  for (std::size_t a = 0; a < 3; ++a)
+  {
+    makeRoom (room, from_x_[a]);
+    table.columns[a] = near_points_.coordinates (a);
+    copies.columns[a] = from_x_[a].data ();
+  }
+  makeRoom (room, places_);
+  makeRoom (room, squared_);
+  copies.places = places_.data ();
+  copies.squared = squared_.data ();
+  const lanes::Stretch all{0, static_cast<std::uint32_t> (near_points_.count ())};
+  near_.resize (engine_.search->copyWithin (table, &all, 1, x.data (), reach * reach, 1.0f / radius, copies));
+  for (std::size_t n = 0; n < near_.size (); ++n)
+    near_[n] = slots_[places_[n]];
 }
 
 /** \brief List the groups that a point sees, and the nodes that will vote. */
@@ -87,7 +116,7 @@ void
 BlockFaces::askForParts (const BlockPoints &points, std::uint32_t point, Combined &combined)
 {
   combined.first_part = parts_.size ();
-  combined.first_voter = combined.last_voter = weights_.size ();
+  combined.first_voter = combined.last_voter = listed_;
   if (points.states[point] != lanes::State::DEFINED)
     return;
   const Eigen::Vector3f x = points.position (point);
@@ -104,39 +133,33 @@ BlockFaces::askForParts (const BlockPoints &points, std::uint32_t point, Combine
     part.state = lanes::State::UNDEFINED;
     parts_.push_back (part);
   }
-  listVoters (x, radius, combined);
+  listVoters (radius, combined);
 }
 
 /** \brief Those that are near a point and of its groups; the last vector of them is filled up. */
 void
-BlockFaces::listVoters (const Eigen::Vector3f &x, float radius, Combined &combined)
+BlockFaces::listVoters (float radius, Combined &combined)
 {
-  const std::size_t room = weights_.size () + near_.size () + lanes::MAX_WIDTH;
+  const std::size_t room = listed_ + near_.size () + lanes::MAX_WIDTH;
   for (std::vector<float> &along : voters_)
-    along.resize (room);
-  weights_.resize (room);
-  const float scale = 1.0f / radius, fall = scale / static_cast<float> (FaceGroups::REACH);
+    makeRoom (room, along);
+  makeRoom (room, weights_);
+  const float fall = 1.0f / radius / static_cast<float> (FaceGroups::REACH);
   std::size_t last = combined.first_voter;
   for (std::size_t n = 0; n < near_.size (); ++n)
   {
-    const int node = near_[n], group = groups_.groupOfSlot (node);
+    const int group = groups_.groupOfSlot (near_[n]);
     const float weight = 1.0f - std::sqrt (squared_[n]) * fall;
     for (std::size_t a = 0; a < 3; ++a)
-      voters_[a][last] =
-          (all_.coordinates (a)[static_cast<std::size_t> (node)] - x[static_cast<Eigen::Index> (a)]) * scale;
+      voters_[a][last] = from_x_[a][n];
     weights_[last] = weight;
     last += group >= 0 && group < combined.groups && weight > 0.0f ? 1 : 0;
   }
   combined.last_voter = last;
-  for (std::size_t i = 0; i < lanes::MAX_WIDTH; ++i)
-  {
-    for (std::vector<float> &along : voters_)
-      along[last + i] = 0.0f;
-    weights_[last + i] = 0.0f;
-  }
+  listed_ = last + lanes::MAX_WIDTH;
   for (std::vector<float> &along : voters_)
-    along.resize (last + lanes::MAX_WIDTH);
-  weights_.resize (last + lanes::MAX_WIDTH);
+    std::fill_n (along.begin () + static_cast<std::ptrdiff_t> (last), lanes::MAX_WIDTH, 0.0f);
+  std::fill_n (weights_.begin () + static_cast<std::ptrdiff_t> (last), lanes::MAX_WIDTH, 0.0f);
 }
 
 void

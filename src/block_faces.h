@@ -54,13 +54,11 @@ public:
 
   /** \brief Put what the faces make in place of what was found for all nodes alike.
    * \param[in] settings what that was found with
-   * \param[in] radius ε at the center, at most; a length
    * \param[in] which of the points are in reach of where faces are kept apart
    * \param[in,out] points those that cannot be told are left unsettled
    */
   void
-  combine (const lanes::Settings &settings, double radius, const std::vector<std::uint32_t> &which,
-           BlockPoints &points);
+  combine (const lanes::Settings &settings, const std::vector<std::uint32_t> &which, BlockPoints &points);
 
   /** \brief For the points last combined, by their place in \a which: the face that holds there, -1 for that of the
    * nearest node. */
@@ -114,13 +112,13 @@ private:
   };
 
   void
-  gatherNodes (double radius);
+  gatherNodes (const std::vector<std::uint32_t> &which, const BlockPoints &points);
 
   void
   listNear (const Eigen::Vector3f &x, float radius);
 
   void
-  listVoters (const Eigen::Vector3f &x, float radius, Combined &combined);
+  listVoters (float radius, Combined &combined);
 
   void
   askForParts (const BlockPoints &points, std::uint32_t point, Combined &combined);
@@ -149,17 +147,20 @@ private:
   double unit_, least_wall_ = 0.0;
   FaceGroups groups_;
   Eigen::Vector3d center_ = Eigen::Vector3d::Zero ();
-  double extent_ = 0.0;
-  bool has_nodes_ = false;
-  BlockNodes all_, of_part_;
+  double reach_of_parts_ = 0.0, reach_of_voters_ = 0.0; // that nodes were gathered for
+  BlockNodes all_, near_points_, of_part_;              // in reach of parts, of voters; of a part
+  std::vector<int> slots_;                              // among all_ of the nodes in reach of voters
   BlockPoints at_part_;
   std::vector<Combined> combined_;
   std::array<std::vector<float>, 3> voters_; // of all points, (x_i - x) / ε
   std::vector<float> weights_;               // theirs
+  std::size_t listed_ = 0;                   // of both
   std::vector<Part> parts_;
-  std::vector<std::uint32_t> parts_to_fit_; // those of one group
-  std::vector<int> near_;                   // nodes around a point
-  std::vector<float> squared_;              // their squared distances from it
+  std::vector<std::uint32_t> parts_to_fit_;  // those of one group
+  std::vector<int> near_;                    // nodes around a point, among all_
+  std::vector<std::uint32_t> places_;        // the same, among near_points_
+  std::array<std::vector<float>, 3> from_x_; // (x_i - x) / ε of them
+  std::vector<float> squared_;               // their squared distances from x
   FaceVote vote_;
   std::size_t evaluations_ = 0, support_nodes_ = 0;
 };

@@ -7,20 +7,6 @@
 namespace erkpa
 {
 
-namespace
-{
-
-/** \brief Arrays only grow, so that nothing is filled in where they are made longer again and again. */
-template <typename T>
-void
-makeRoom (std::size_t size, std::vector<T> &array)
-{
-  if (array.size () < size)
-    array.resize (2 * size);
-}
-
-} // namespace
-
 BlockNodes::BlockNodes (const ImplicitField &field, const lanes::Engine &engine, double unit)
     : field_ (field), table_ (field.nodeTable ()), search_ (*engine.search), index_ (table_.grid->index ()),
       inverse_unit_ (1.0 / unit)

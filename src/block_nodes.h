@@ -16,6 +16,15 @@
 namespace erkpa
 {
 
+/** \brief Arrays only grow, so that nothing is filled in where they are made longer again and again. */
+template <typename T>
+void
+makeRoom (std::size_t size, std::vector<T> &array)
+{
+  if (array.size () < size)
+    array.resize (2 * size);
+}
+
 /** \brief Nodes around a ball as the arrays that the lanes read: with a middle as origin and a length as unit.
  *
  * Arrays keep their memory from ball to ball.
@@ -75,6 +84,13 @@ public:
     const std::uint32_t place = places_[i];
     return {table_.grid->coordinates (0)[place], table_.grid->coordinates (1)[place],
             table_.grid->coordinates (2)[place]};
+  }
+
+  /** \brief Of a node from the center, after find () or copyAround (). */
+  float
+  squaredDistance (std::size_t i) const
+  {
+    return squared_[i];
   }
 
   /** \brief A distance within which there are k of the nodes of copyAround (), little more than that of the k-th.

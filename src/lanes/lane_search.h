@@ -57,7 +57,7 @@ copyWithin (const Table &table, const Stretch *stretches, std::size_t count, con
                   {
                     for (std::size_t a = 0; a < 3; ++a)
                       packing.pack (d[a] * B (scale), copies.columns[a] + kept);
-                    for (std::size_t a = 3; a < Table::COLUMNS; ++a)
+                    for (std::size_t a = 3; a < (table.columns[3] != nullptr ? Table::COLUMNS : 3); ++a)
                       packing.pack (Packing<B>::load (table.columns[a] + first, left), copies.columns[a] + kept);
                     if (copies.squared != nullptr)
                       packing.pack (squared, copies.squared + kept);

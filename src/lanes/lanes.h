@@ -170,7 +170,7 @@ struct Found
   float *squared;
 };
 
-/** \brief Positions and normals of points, as arrays. */
+/** \brief Positions and, where they are wanted, normals of points, as arrays. */
 struct Table
 {
   static constexpr std::size_t COLUMNS = 6;
