@@ -87,24 +87,22 @@ BlockFaces::combine (const lanes::Settings &settings, const std::vector<std::uin
     vote (points, which[i], combined_[i]);
 }
 
-/** \brief The nodes that have a say at x: see FaceGroups::REACH. */
+/** \brief The nodes that have a say at x (see FaceGroups::REACH), as voters whose weights are squared distances yet. */
 void
 BlockFaces::listNear (const Eigen::Vector3f &x, float radius)
 {
   const auto reach = static_cast<float> (FaceGroups::REACH) * radius;
   const std::size_t room = near_points_.count () + lanes::MAX_WIDTH;
+  makeRoom (room, places_);
+  makeRoom (listed_ + room, weights_);
   lanes::Table table{};
-  lanes::Copies copies{};
+  lanes::Copies copies{places_.data (), {}, weights_.data () + listed_};
   for (std::size_t a = 0; a < 3; ++a)
   {
-    makeRoom (room, from_x_[a]);
+    makeRoom (listed_ + room, voters_[a]);
     table.columns[a] = near_points_.coordinates (a);
-    copies.columns[a] = from_x_[a].data ();
+    copies.columns[a] = voters_[a].data () + listed_;
   }
-  makeRoom (room, places_);
-  makeRoom (room, squared_);
-  copies.places = places_.data ();
-  copies.squared = squared_.data ();
   const lanes::Stretch all{0, static_cast<std::uint32_t> (near_points_.count ())};
   near_.resize (engine_.search->copyWithin (table, &all, 1, x.data (), reach * reach, 1.0f / radius, copies));
   for (std::size_t n = 0; n < near_.size (); ++n)
@@ -133,33 +131,27 @@ BlockFaces::askForParts (const BlockPoints &points, std::uint32_t point, Combine
     part.state = lanes::State::UNDEFINED;
     parts_.push_back (part);
   }
-  listVoters (radius, combined);
+  weighVoters (radius, combined);
 }
 
-/** \brief Those that are near a point and of its groups; the last vector of them is filled up. */
+/** \brief Those that are of a point's groups have a vote; the last vector of them is filled up. */
 void
-BlockFaces::listVoters (float radius, Combined &combined)
+BlockFaces::weighVoters (float radius, Combined &combined)
 {
-  const std::size_t room = listed_ + near_.size () + lanes::MAX_WIDTH;
-  for (std::vector<float> &along : voters_)
-    makeRoom (room, along);
-  makeRoom (room, weights_);
   const float fall = 1.0f / radius / static_cast<float> (FaceGroups::REACH);
-  std::size_t last = combined.first_voter;
-  for (std::size_t n = 0; n < near_.size (); ++n)
+  float *const weights = weights_.data () + listed_;
+  const std::size_t count = near_.size ();
+  for (std::size_t n = 0; n < count; ++n)
   {
     const int group = groups_.groupOfSlot (near_[n]);
-    const float weight = 1.0f - std::sqrt (squared_[n]) * fall;
-    for (std::size_t a = 0; a < 3; ++a)
-      voters_[a][last] = from_x_[a][n];
-    weights_[last] = weight;
-    last += group >= 0 && group < combined.groups && weight > 0.0f ? 1 : 0;
+    const float weight = std::max (1.0f - std::sqrt (weights[n]) * fall, 0.0f);
+    weights[n] = group >= 0 && group < combined.groups ? weight : 0.0f;
   }
-  combined.last_voter = last;
-  listed_ = last + lanes::MAX_WIDTH;
-  for (std::vector<float> &along : voters_)
-    std::fill_n (along.begin () + static_cast<std::ptrdiff_t> (last), lanes::MAX_WIDTH, 0.0f);
-  std::fill_n (weights_.begin () + static_cast<std::ptrdiff_t> (last), lanes::MAX_WIDTH, 0.0f);
+  listed_ += count;
+  combined.last_voter = listed_;
+  for (const auto array : {&voters_[0], &voters_[1], &voters_[2], &weights_})
+    std::fill_n (array->begin () + static_cast<std::ptrdiff_t> (listed_), lanes::MAX_WIDTH, 0.0f);
+  listed_ += lanes::MAX_WIDTH;
 }
 
 void

@@ -118,7 +118,7 @@ private:
   listNear (const Eigen::Vector3f &x, float radius);
 
   void
-  listVoters (float radius, Combined &combined);
+  weighVoters (float radius, Combined &combined);
 
   void
   askForParts (const BlockPoints &points, std::uint32_t point, Combined &combined);
@@ -152,15 +152,13 @@ private:
   std::vector<int> slots_;                              // among all_ of the nodes in reach of voters
   BlockPoints at_part_;
   std::vector<Combined> combined_;
-  std::array<std::vector<float>, 3> voters_; // of all points, (x_i - x) / ε
-  std::vector<float> weights_;               // theirs
+  std::array<std::vector<float>, 3> voters_; // of all points: (x_i - x) / ε, ...
+  std::vector<float> weights_;               // ... and their weights
   std::size_t listed_ = 0;                   // of both
   std::vector<Part> parts_;
-  std::vector<std::uint32_t> parts_to_fit_;  // those of one group
-  std::vector<int> near_;                    // nodes around a point, among all_
-  std::vector<std::uint32_t> places_;        // the same, among near_points_
-  std::array<std::vector<float>, 3> from_x_; // (x_i - x) / ε of them
-  std::vector<float> squared_;               // their squared distances from x
+  std::vector<std::uint32_t> parts_to_fit_; // those of one group
+  std::vector<int> near_;                   // nodes around a point, among all_
+  std::vector<std::uint32_t> places_;       // the same, among near_points_
   FaceVote vote_;
   std::size_t evaluations_ = 0, support_nodes_ = 0;
 };

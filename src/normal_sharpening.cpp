@@ -69,12 +69,14 @@ areBlended (const NeighborSearch &search, const NormalScale &scale, int threads,
   return SHARE * blended > at_edges;
 }
 
+/** \param[in] nodes about how many */
 RoughPieces
-gatherPieces (const NeighborSearch &search, const OrientedPoints &points, const std::vector<std::size_t> &rough, int k)
+gatherPieces (const NeighborSearch &search, const OrientedPoints &points, const std::vector<std::size_t> &rough, int k,
+              std::size_t nodes)
 {
-  constexpr std::size_t PIECES = 64, NODES = 6000; // at most, and about
-  constexpr int AROUND = 5;                        // times the neighbours of a fit
-  const std::size_t count = std::clamp<std::size_t> (NODES / static_cast<std::size_t> (AROUND * k), 1, PIECES);
+  constexpr std::size_t PIECES = 64; // at most
+  constexpr int AROUND = 5;          // times the neighbours of a fit
+  const std::size_t count = std::clamp<std::size_t> (nodes / static_cast<std::size_t> (AROUND * k), 1, PIECES);
   const std::size_t step = (rough.size () + count - 1) / count;
   std::map<int, bool> is_middle;
   std::vector<int> found;
@@ -99,27 +101,15 @@ gatherPieces (const NeighborSearch &search, const OrientedPoints &points, const 
   return pieces;
 }
 
-} // namespace
-
-void
-sharpenNormals (const NeighborSearch &search, const NormalScale &scale, int threads, OrientedPoints &points)
-{
-  NormalSharpener sharpener (search, scale, threads, points);
-  points.normals = sharpener.run ();
-}
-
+/** \brief The median of how far the normals of points in pieces lean to the other faces of their edges.
+ * \return false where few are at edges
+ */
 bool
-areNormalsSmeared (const NeighborSearch &search, const NormalScale &scale, int threads, const OrientedPoints &points)
+medianLean (const RoughPieces &pieces, const NormalScale &scale, int threads, double &median)
 {
   constexpr std::size_t ENOUGH = 20;
-  // Of PCA at edges, 0.25 to 0.35 and more with noise; of exact normals 0, but 0.3 where much noise feigns edges.
-  const double smeared = std::min (0.38, 0.2 + 0.6 * scale.noise / scale.spacing);
-  const std::vector<std::size_t> rough = findRough (search, scale, threads, points);
-  if (rough.empty () || !areBlended (search, scale, threads, points, rough))
-    return false;
-  const RoughPieces pieces = gatherPieces (search, points, rough, scale.k);
-  const NeighborSearch::ConstPtr search_in_pieces = makeGridSearch (pieces.points.positions, threads);
-  NormalSharpener sharpener (*search_in_pieces, scale, threads, pieces.points);
+  const NeighborSearch::ConstPtr search = makeGridSearch (pieces.points.positions, threads);
+  NormalSharpener sharpener (*search, scale, threads, pieces.points);
   sharpener.run ();
   std::vector<double> leans;
   Neighborhood near;
@@ -134,7 +124,34 @@ areNormalsSmeared (const NeighborSearch &search, const NormalScale &scale, int t
     return false;
   const auto middle = leans.begin () + static_cast<std::ptrdiff_t> (leans.size () / 2);
   std::nth_element (leans.begin (), middle, leans.end ());
-  return *middle > smeared;
+  median = *middle;
+  return true;
+}
+
+} // namespace
+
+void
+sharpenNormals (const NeighborSearch &search, const NormalScale &scale, int threads, OrientedPoints &points)
+{
+  NormalSharpener sharpener (search, scale, threads, points);
+  points.normals = sharpener.run ();
+}
+
+bool
+areNormalsSmeared (const NeighborSearch &search, const NormalScale &scale, int threads, const OrientedPoints &points)
+{
+  constexpr std::size_t FEW = 1500, MANY = 6000;
+  constexpr double CLEARLY_NOT = 0.4; // of the limit: then few nodes are enough
+  // Of PCA at edges, 0.25 to 0.35 and more with noise; of exact normals 0, but 0.3 where much noise feigns edges.
+  const double smeared = std::min (0.38, 0.2 + 0.6 * scale.noise / scale.spacing);
+  const std::vector<std::size_t> rough = findRough (search, scale, threads, points);
+  if (rough.empty () || !areBlended (search, scale, threads, points, rough))
+    return false;
+  double lean = 0.0;
+  if (medianLean (gatherPieces (search, points, rough, scale.k, FEW), scale, threads, lean) &&
+      lean < CLEARLY_NOT * smeared)
+    return false;
+  return medianLean (gatherPieces (search, points, rough, scale.k, MANY), scale, threads, lean) && lean > smeared;
 }
 
 } // namespace erkpa
