@@ -203,21 +203,20 @@ PointGrid::withinRadius (const Eigen::Vector3d &x, double radius, std::vector<in
   const auto limit = static_cast<float> (radius * radius);
   const lanes::Search &search = *lanes::bestEngine ().search;
   const lanes::Cloud cloud{coordinates_[0].data (), coordinates_[1].data (), coordinates_[2].data ()};
-  std::size_t kept = 0;
+  thread_local std::vector<lanes::Stretch> stretches; // kept, for there are many small queries
+  stretches.clear ();
+  std::size_t most = lanes::MAX_WIDTH;
   visitNear (x, radius,
              [&] (std::size_t first, std::size_t last)
              {
-               const std::size_t most = kept + (last - first) + lanes::MAX_WIDTH;
-               if (indices.size () < most || squared_distances.size () < most)
-               {
-                 indices.resize (2 * most);
-                 squared_distances.resize (2 * most);
-               }
-               const lanes::Stretch stretch{static_cast<std::uint32_t> (first), static_cast<std::uint32_t> (last)};
-               auto *const places = reinterpret_cast<std::uint32_t *> (indices.data ()); // of the same layout
-               kept += search.findWithin (cloud, &stretch, 1, center.data (), limit,
-                                          {places + kept, squared_distances.data () + kept});
+               stretches.push_back ({static_cast<std::uint32_t> (first), static_cast<std::uint32_t> (last)});
+               most += last - first;
              });
+  indices.resize (std::max (indices.size (), most));
+  squared_distances.resize (std::max (squared_distances.size (), most));
+  auto *const places = reinterpret_cast<std::uint32_t *> (indices.data ()); // of the same layout
+  const std::size_t kept = search.findWithin (cloud, stretches.data (), stretches.size (), center.data (), limit,
+                                              {places, squared_distances.data ()});
   indices.resize (kept);
   squared_distances.resize (kept);
   for (int &place : indices)

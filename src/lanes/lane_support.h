@@ -51,7 +51,7 @@ public:
     if (supports[0].lists_all_)
       supports[0].keepSupporting ();
     else
-      supports[0].listWithin (supports, count, supports[0].nodes_->count, Scratch::COLUMNS);
+      supports[0].template listWithin<Scratch::COLUMNS> (supports, count, supports[0].nodes_->count);
     for (std::size_t s = 1; s < count; ++s)
     {
       supports[s].listed_ = supports[0].listed_;
@@ -183,40 +183,50 @@ private:
     return xsimd::fma (d[2], d[2], xsimd::fma (d[1], d[1], xsimd::fma (d[0], d[0], B (LEAST))));
   }
 
-  /** \brief Lists those of the first \a value_points that may lie within the bounds of some lane of some supports.
+  /** \brief What all nodes have: see Scratch. */
+  const float *
+  all (std::size_t column) const
+  {
+    const float *const columns[Scratch::COLUMNS] = {nodes_->x,  nodes_->y,  nodes_->z,      nodes_->nx,
+                                                    nodes_->ny, nodes_->nz, nodes_->lambda, nodes_->confidence};
+    return columns[column];
+  }
+
+  /** \brief Lists those of the first \a value_points that may lie within the bounds of some lane of some supports, with
+   * the first COLUMNS of what they have.
    *
    * Those within a ball around all of them: for once the lanes are nodes, for there are many more of these.
    */
+  template <std::size_t COLUMNS>
   void
-  listWithin (const LaneSupport *supports, std::size_t count, std::size_t value_points, std::size_t columns)
+  listWithin (const LaneSupport *supports, std::size_t count, std::size_t value_points)
   {
-    const float *const all[Scratch::COLUMNS] = {nodes_->x,  nodes_->y,  nodes_->z,      nodes_->nx,
-                                                nodes_->ny, nodes_->nz, nodes_->lambda, nodes_->confidence};
-    const float *from[Scratch::COLUMNS];
-    float *to[Scratch::COLUMNS];
-    std::size_t arrays = 0;
-    for (std::size_t column = 0; column < columns; ++column)
-      if (all[column] != nullptr)
-      {
-        from[arrays] = all[column];
-        to[arrays++] = near_[column];
-      }
+    const float *from[COLUMNS];
+    for (std::size_t column = 0; column < COLUMNS; ++column)
+      from[column] = all (column);
     float middle[3], reach = 0.0f;
     findBall (supports, count, middle, reach);
     const B limit (reach * reach);
-    listed_ = 0;
+    std::size_t listed = 0;
     for (std::size_t first = 0; first < value_points; first += WIDTH)
     {
-      const B d[] = {B::load_unaligned (nodes_->x + first) - B (middle[0]),
-                     B::load_unaligned (nodes_->y + first) - B (middle[1]),
-                     B::load_unaligned (nodes_->z + first) - B (middle[2])};
+      B x[3], d[3];
+      for (std::size_t a = 0; a < 3; ++a)
+      {
+        x[a] = B::load_unaligned (from[a] + first);
+        d[a] = x[a] - B (middle[a]);
+      }
       const std::size_t left = value_points - first;
       const Packing<B> packing (limit - squaredLength (d), left);
-      for (std::size_t a = 0; a < arrays; ++a)
-        packing.pack (Packing<B>::load (from[a] + first, left), to[a] + listed_);
-      packing.packNumbers (first, list_ + listed_);
-      listed_ += packing.size ();
+      for (std::size_t a = 0; a < 3; ++a)
+        packing.pack (x[a], near_[a] + listed);
+      for (std::size_t column = 3; column < COLUMNS; ++column)
+        if (from[column] != nullptr)
+          packing.pack (Packing<B>::load (from[column] + first, left), near_[column] + listed);
+      packing.packNumbers (first, list_ + listed);
+      listed += packing.size ();
     }
+    listed_ = listed;
     for (on_surface_ = listed_; on_surface_ > 0 && list_[on_surface_ - 1] >= nodes_->on_surface;)
       --on_surface_;
   }
@@ -275,7 +285,7 @@ private:
     radius_ = xsimd::min (limit, is_first ? guess * B (MORE_THAN_GUESS) : B (MORE * largest_));
     for (;;)
     {
-      listWithin (this, 1, nodes_->on_surface, lists_all_ ? Scratch::COLUMNS : 3);
+      lists_all_ ? listWithin<Scratch::COLUMNS> (this, 1, nodes_->count) : listWithin<3> (this, 1, nodes_->on_surface);
       measureDistances ();
       LaneNearest<B> nearest (rows_, listed_, k_);
       const B bound = radius_ * radius_ * B (1.0f + ROUNDING), in_bound = nearest.countWithin (bound);
@@ -343,8 +353,8 @@ private:
   bool is_limited_;
   B x_[3];
   B radius_, inverse_, kth_;
-  B at_limit_; // 1 where ε is Points::radius
-  B short_;    // 1 where it is beyond
+  B at_limit_;             // 1 where ε is Points::radius
+  B short_;                // 1 where it is beyond
   bool lists_all_ = false; // the list was made for the k-th node, and holds those in the support
   B expected_;             // ε² of the points before, in the mean
   float largest_;          // ε of them at most
