@@ -27,7 +27,7 @@ isPlainModel (const SharpSurfaceParts &parts)
 
 BlockEnrichment::BlockEnrichment (const ImplicitField &field, double unit)
     : field_ (field), inverse_unit_ (1.0 / unit),
-      can_evaluate_ (field.options ().constraint == Constraint::HERMITE &&
+      can_evaluate_ (field.options ().constraint != Constraint::OFFSURFACE &&
                      field.options ().enrichment == EnrichmentType::KINK &&
                      (field.options ().order == Order::LINEAR || field.options ().order == Order::SPHERICAL))
 {

@@ -89,11 +89,14 @@ protected:
     return points;
   }
 
-  /** \brief Holds the quick field against its definition around some places. */
+  /** \brief Holds the quick field against its definition around some places.
+   * \param[in] least_settled share of the points that must not be left to the definition
+   */
   static void
-  expectAgreement (const ImplicitField &field, const std::vector<Vector3d> &middles)
+  expectAgreement (const ImplicitField &field, const std::vector<Vector3d> &middles, double least_settled = 0.9)
   {
     const double spacing = field.spacing ();
+    const bool is_functional = field.options ().constraint == Constraint::FUNCTIONAL;
     std::size_t engines = 0;
     const erkpa::lanes::Engine *const *engine = erkpa::lanes::engines (engines);
     for (std::size_t e = 0; e < engines; ++e)
@@ -113,11 +116,15 @@ protected:
             continue;
           ++settled;
           keys += local.sideKey () == block.sideKey (i) ? 1 : 0;
-          EXPECT_NEAR (sample.value, block.value (i), 1e-4 * spacing) << engine[e]->name;
-          EXPECT_LT ((sample.gradient - block.gradient (i)).norm (), 2e-3) << engine[e]->name;
+          // Functional values hang on the thickness of the nodes alone, which floats know less well, the farther off.
+          const double scale = is_functional ? 10.0 * std::max (1.0, std::abs (sample.value) / spacing) : 1.0;
+          EXPECT_NEAR (sample.value, block.value (i), 1e-4 * scale * spacing) << engine[e]->name;
+          EXPECT_LT ((sample.gradient - block.gradient (i)).norm (),
+                     2e-3 * scale * std::max (1.0, sample.gradient.norm ()))
+              << engine[e]->name;
         }
       }
-      EXPECT_GT (settled, compared - compared / 10) << engine[e]->name;
+      EXPECT_GT (settled, least_settled * compared) << engine[e]->name;
       EXPECT_GT (keys, settled - settled / 100) << "a node on the very rim of a support may count or not";
     }
   }
@@ -365,6 +372,28 @@ TEST_F (BlockFieldTest, AgreesWithTheDefinitionWhereSharpSurfacesPass)
       SCOPED_TRACE (support);
       expectAgreement (*shapes::field (shapes::box (6000, half), options), placesOnBox (half));
     }
+}
+
+/** \brief The paper's own way, eq. (2) and (22): no squares, and pivots that are raised where nodes are flat. */
+TEST_F (BlockFieldTest, AgreesWithTheDefinitionWhereSharpSurfacesPassFunctionalValues)
+{
+  const Vector3d half (0.5, 0.35, 0.25);
+  for (const Order order : {Order::LINEAR, Order::SPHERICAL})
+    for (const bool by_nearest : {true, false})
+      for (const bool is_limited : {false, true})
+      {
+        FieldOptions options = optionsOf (order, by_nearest ? 20 : 0, by_nearest ? 0.0 : 0.12);
+        options.constraint = erkpa::Constraint::FUNCTIONAL;
+        erkpa::Extent::ConstPtr extent;
+        ASSERT_TRUE (erkpa::makeBoxExtent ({-0.45, -0.4, -0.2}, {0.3, 0.2, 0.3}, extent).ok ());
+        for (const Eigen::Vector4d &plane : shapes::boxBisectors (half))
+          options.sharp_surfaces.push_back (is_limited ? erkpa::makeLimited (shapes::plane (plane), extent)
+                                                       : shapes::plane (plane));
+        SCOPED_TRACE (by_nearest ? "nearest" : "radius");
+        // Pivots that are raised turn squares, of which the spherical basis has one: many places want the definition.
+        expectAgreement (*shapes::field (shapes::box (6000, half), options), placesOnBox (half),
+                         order == Order::LINEAR ? 0.9 : 0.1);
+      }
 }
 
 /** \brief Limited ones fade around the ends of their extents, and so do the corners that they make with others. */

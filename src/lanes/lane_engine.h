@@ -168,7 +168,7 @@ evaluateWith (const Settings &settings, const Nodes &nodes, const Points &points
                    });
 }
 
-template <typename B, Basis BASIS, template <typename> class KernelT>
+template <typename B, Basis BASIS, Constraint CONSTRAINT, template <typename> class KernelT>
 void
 evaluateEnriched (const Settings &settings, const Nodes &nodes, const Points &points, const SharpSurfaces &sharp,
                   const Scratch &scratch, const Samples &samples)
@@ -176,7 +176,7 @@ evaluateEnriched (const Settings &settings, const Nodes &nodes, const Points &po
   const LaneEngine<B> engine (settings, nodes, points, scratch, samples);
   const auto take_with = [&] (auto fit, const LaneSupport<B> &support, std::size_t first)
   { engine.store (support, fit, first); };
-  LaneMoments<B, BASIS, Constraint::HERMITE, KernelT> moments (settings);
+  LaneMoments<B, BASIS, CONSTRAINT, KernelT> moments (settings);
   engine.evaluate (
       [] (const LaneSupport<B> *, std::size_t) {},
       [&] (std::size_t, const LaneSupport<B> &support, std::size_t first)
@@ -185,15 +185,27 @@ evaluateEnriched (const Settings &settings, const Nodes &nodes, const Points &po
         if (near.count == 0)
         {
           moments.sum (&support, 1);
-          take_with (LaneFit<B, BASIS, Constraint::HERMITE, KernelT> (settings, support, moments.reach (0),
-                                                                      moments.system (0)),
+          take_with (LaneFit<B, BASIS, CONSTRAINT, KernelT> (settings, support, moments.reach (0), moments.system (0)),
                      support, first);
         }
         else if (near.count == 1)
-          take_with (LaneEnrichedFit<B, BASIS, KernelT, 1> (settings, near, first, support), support, first);
+          take_with (LaneEnrichedFit<B, BASIS, CONSTRAINT, KernelT, 1> (settings, near, first, support), support,
+                     first);
         else
-          take_with (LaneEnrichedFit<B, BASIS, KernelT, ANY_COUNT> (settings, near, first, support), support, first);
+          take_with (LaneEnrichedFit<B, BASIS, CONSTRAINT, KernelT, ANY_COUNT> (settings, near, first, support),
+                     support, first);
       });
+}
+
+template <typename B, Basis BASIS, Constraint CONSTRAINT>
+void
+evaluateEnriched (const Settings &settings, const Nodes &nodes, const Points &points, const SharpSurfaces &sharp,
+                  const Scratch &scratch, const Samples &samples)
+{
+  if (settings.kernel == Kernel::PAPER)
+    evaluateEnriched<B, BASIS, CONSTRAINT, PaperKernel> (settings, nodes, points, sharp, scratch, samples);
+  else
+    evaluateEnriched<B, BASIS, CONSTRAINT, AnyKernel> (settings, nodes, points, sharp, scratch, samples);
 }
 
 template <typename B, Basis BASIS>
@@ -201,10 +213,10 @@ void
 evaluateEnriched (const Settings &settings, const Nodes &nodes, const Points &points, const SharpSurfaces &sharp,
                   const Scratch &scratch, const Samples &samples)
 {
-  if (settings.kernel == Kernel::PAPER)
-    evaluateEnriched<B, BASIS, PaperKernel> (settings, nodes, points, sharp, scratch, samples);
+  if (settings.constraint == Constraint::FUNCTIONAL)
+    evaluateEnriched<B, BASIS, Constraint::FUNCTIONAL> (settings, nodes, points, sharp, scratch, samples);
   else
-    evaluateEnriched<B, BASIS, AnyKernel> (settings, nodes, points, sharp, scratch, samples);
+    evaluateEnriched<B, BASIS, Constraint::HERMITE> (settings, nodes, points, sharp, scratch, samples);
 }
 
 template <typename B, Basis BASIS, Constraint CONSTRAINT>

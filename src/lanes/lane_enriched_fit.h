@@ -2,6 +2,8 @@
 #pragma once
 
 #include "lane_kinks.h"
+#include "lane_pivot.h"
+#include "lane_raises.h"
 #include "lane_reach.h"
 #include "lane_support.h"
 #include "lane_terms.h"
@@ -10,16 +12,19 @@
 namespace erkpa::lanes
 {
 
-/** \brief FieldFit with kinks in lanes, for the Hermite constraint: the terms of LaneKinks follow the polynomials. A
- * lane where a term does not count has zeros for it. All sums are taken in u = (x_i - x) / ε.
+/** \brief FieldFit with kinks in lanes, for gradients or functional values: the terms of LaneKinks follow the
+ * polynomials. A lane where a term does not count has zeros for it. All sums are taken in u = (x_i - x) / ε.
  * \tparam COUNT of the sharp surfaces: see LaneKinks
  */
-template <typename B, Basis BASIS, template <typename> class KernelT, int COUNT>
+template <typename B, Basis BASIS, Constraint CONSTRAINT, template <typename> class KernelT, int COUNT>
 class LaneEnrichedFit
 {
 public:
+  static constexpr bool IS_HERMITE = CONSTRAINT == Constraint::HERMITE;
+  static_assert (IS_HERMITE || CONSTRAINT == Constraint::FUNCTIONAL);
+
   using Mask = decltype (B () < B ());
-  using KinksT = LaneKinks<B, COUNT>;
+  using KinksT = LaneKinks<B, COUNT, IS_HERMITE>;
   static constexpr int SIZE = Terms<B, BASIS>::SIZE;
   static constexpr bool IS_ENRICHED = true;
 
@@ -30,15 +35,20 @@ public:
         reach_ (settings, support.radius (), support.squaredRadius ()), kinks_ (near, first, scale_)
   {
     sumMoments ();
-    TermsT::addGradientMoments (M_);
     weight_ = M_[0];
+    spread_ = B (0.0f);
+    for (int a = 0; a < 3; ++a)
+    {
+      centroid_[a] = M_[at (1 + a, 0)] / weight_;
+      spread_ += fnma (centroid_[a], M_[at (1 + a, 0)], M_[at (1 + a, 1 + a)]);
+    }
+    if constexpr (IS_HERMITE)
+      TermsT::addGradientMoments (M_);
     kinks_.activate (weight_);
     for (int j = 0; j < size (); ++j)
       at_x_[j] = j < SIZE ? B (j == 0 ? 1.0f : 0.0f) : kinks_.atPoint (j - SIZE);
     for (int j = SIZE; j < size (); ++j)
       keep (j, kinks_.counts (j - SIZE));
-    for (int a = 0; a < 3; ++a)
-      centroid_[a] = M_[at (1 + a, 0)] / weight_;
     factorize ();
     for (int j = 0; j < size (); ++j)
       c_[j] = b_[j];
@@ -89,11 +99,12 @@ public:
     solve (a_);
     WeightChange<B> all, below[KinksT::MAX_COUNT], above[KinksT::MAX_COUNT];
     B by_u[3] = {B (0.0f), B (0.0f), B (0.0f)}, by_radius (0.0f);
+    B direct[3] = {by_radius, by_radius, by_radius}; // of eq. (2)
     weights_.visitNodes ([&] (std::size_t i, B, B t, const B *u)
-                         { addResidual (i, t, u, by_u, by_radius, all, below, above); });
+                         { addResidual (i, t, u, by_u, by_radius, direct, all, below, above); });
     for (int a = 0; a < 3; ++a)
     {
-      gradient[a] = xsimd::fma (growth_[a], by_radius, c_[1 + a] - by_u[a]);
+      gradient[a] = xsimd::fma (growth_[a], by_radius, c_[1 + a] + direct[a] - by_u[a]);
       for (int j = SIZE; j < size (); ++j)
         gradient[a] = xsimd::fma (c_[j], kinks_.slopeAtPoint (j - SIZE, a), gradient[a]);
       B of_below[KinksT::MAX_COUNT], of_above[KinksT::MAX_COUNT];
@@ -111,17 +122,41 @@ public:
             xsimd::select (part > B (0.0f) || part < B (0.0f), fnma (part, of_fade, gradient[a]), gradient[a]);
       }
     }
+    if constexpr (!IS_HERMITE)
+      LaneRaises<B, TermsT, LaneWeights<B, KernelT>> (weights_, centroid_, spread_)
+          .subtractFrom (gradient, *this, a_, c_, radius_gradient);
   }
 
-  /** \brief Where a pivot that is raised moves the gradient. */
+  /** \brief Where a pivot that is raised moves the gradient by more than is computed here: of functional values, those
+   * of the linear terms are, unless there are squares into which they turn. */
   Mask
   isUnsettled () const
   {
     constexpr float NEGLIGIBLE = 1e-5f;
     Mask unsettled = B (0.0f) > B (1.0f);
-    for (int j = 1; j < size (); ++j)
-      unsettled = unsettled || xsimd::abs (a_[j] * c_[j] * raises_[j]) > B (NEGLIGIBLE);
+    for (int j = IS_HERMITE ? size () : SIZE > 4 ? 1 : SIZE; j < SIZE; ++j)
+      unsettled = unsettled || pivots_[j].raise > B (0.0f);
+    for (int j = IS_HERMITE ? 1 : SIZE; j < size (); ++j)
+      unsettled = unsettled || xsimd::abs (a_[j] * c_[j] * pivots_[j].raise) > B (NEGLIGIBLE);
     return unsettled;
+  }
+
+  /** \brief See LaneSystem. */
+  const LanePivot<B> &
+  pivot (int j) const
+  {
+    return pivots_[j];
+  }
+
+  /** \brief See LaneSystem; of a polynomial. */
+  void
+  residualOfTerm (int term, B *v) const
+  {
+    for (int i = 0; i < SIZE; ++i)
+      v[i] = B (i == term ? 1.0f : 0.0f);
+    for (int j = term - 1; j >= 0; --j)
+      for (int i = j + 1; i <= term; ++i)
+        v[j] = fnma (M_[at (i, j)], v[i], v[j]);
   }
 
   B
@@ -182,10 +217,11 @@ private:
     B n[3], R[MAX_SIZE], G[KinksT::MAX_TERMS][3];
     weights_.normal (i, n);
     TermsT::evaluate (u, dot (u, u), R);
-    TermsT::addNormal (weight, u, n, b_);
+    if constexpr (IS_HERMITE)
+      TermsT::addNormal (weight, u, n, b_);
     const unsigned there = kinks_.evaluate (node, R + SIZE, G);
-    const bool has_height = weights_.hasLambda ();
-    const B height = weights_.lambda (i) * scale_;
+    const bool has_height = !IS_HERMITE || weights_.hasLambda ();
+    const B height = heightOf (i, u, n);
     for (int j = 0; j < size (); ++j)
     {
       if (j >= SIZE && (there >> (j - SIZE) & 1u) == 0)
@@ -195,9 +231,17 @@ private:
         M_[at (j, k)] = xsimd::fma (wr, R[k], M_[at (j, k)]);
       if (has_height)
         b_[j] = xsimd::fma (wr, height, b_[j]);
-      if (j >= SIZE)
+      if (IS_HERMITE && j >= SIZE)
         addSlopesOf (j - SIZE, weight, u, n, G);
     }
+  }
+
+  /** \brief The value that a node asks for, as a share of ε. */
+  B
+  heightOf (std::size_t i, const B *u, const B *n) const
+  {
+    const B lambda = weights_.lambda (i) * scale_;
+    return IS_HERMITE ? lambda : lambda - dot (u, n); // eq. (2)
   }
 
   /** \brief The products of the gradients of kink term e with those of the terms before it; polynomials' own follow
@@ -236,9 +280,13 @@ private:
   void
   factorize ()
   {
+    B moments[MAX_SIZE];
+    for (int j = 0; j < size (); ++j)
+      moments[j] = M_[at (j, j)];
     for (int j = 0; j < size (); ++j)
     {
-      raisePivot (j);
+      pivots_[j] = LanePivot<B> (M_[at (j, j)], floorOf (j, moments[j]));
+      M_[at (j, j)] = pivots_[j].raised;
       if (j >= SIZE + kinks_.firstFading ())
         M_[at (j, j)] += kinks_.fadeOf (j - SIZE);
       const B inverse = B (1.0f) / M_[at (j, j)];
@@ -253,18 +301,12 @@ private:
     }
   }
 
-  void
-  raisePivot (int j)
+  B
+  floorOf (int j, B moment) const
   {
-    constexpr float LEAST = 1e-9f, OF_POLYNOMIALS[] = {0.0f, 1e-10f, 1e-4f}, OF_KINKS = 2e-5f; // see PivotFloor
-    const bool is_kink = j >= SIZE && j < squareOf (0);
-    const B floor = B (is_kink ? OF_KINKS : OF_POLYNOMIALS[j < SIZE ? TermsT::degree (j) : 2]) * weight_;
-    const B one (1.0f), zero (0.0f), pivot = M_[at (j, j)];
-    const auto is_low = pivot < floor;
-    const B share = xsimd::max (pivot / xsimd::select (floor > zero, floor, one), B (LEAST));
-    raises_[j] = xsimd::select (is_low, floor * (one - share) * (one - share) / share, zero);
-    const B raised = xsimd::select (is_low, floor * share + raises_[j], pivot);
-    M_[at (j, j)] = xsimd::select (raised > zero, raised, one);
+    if (j >= SIZE && j < squareOf (0))
+      return floorOfKink (CONSTRAINT, weight_, moment);
+    return floorOfPolynomial (CONSTRAINT, j < SIZE ? TermsT::degree (j) : 2, weight_, spread_);
   }
 
   void
@@ -282,8 +324,8 @@ private:
 
   /** \brief The residual of the fit at a node, by which the change of its weight moves f; and that change by itself. */
   void
-  addResidual (std::size_t i, B t, const B *u, B *by_u, B &by_radius, WeightChange<B> &all, WeightChange<B> *below,
-               WeightChange<B> *above) const
+  addResidual (std::size_t i, B t, const B *u, B *by_u, B &by_radius, B *direct, WeightChange<B> &all,
+               WeightChange<B> *below, WeightChange<B> *above) const
   {
     const std::size_t node = support_.node (i);
     B n[3], R[MAX_SIZE], G[KinksT::MAX_TERMS][3];
@@ -291,13 +333,36 @@ private:
     weights_.normal (i, n);
     TermsT::evaluate (u, t * t, R);
     kinks_.evaluate (node, R + SIZE, G);
-    B share (0.0f), residual = weights_.lambda (i) * scale_;
+    B share (0.0f), residual = heightOf (i, u, n);
     for (int j = 0; j < size (); ++j)
     {
       share = xsimd::fma (a_[j], R[j], share);
       residual = fnma (c_[j], R[j], residual);
     }
-    B of_shape[3], of_fit[3];
+    if constexpr (IS_HERMITE)
+    {
+      const B of_gradients = residualOfGradient (u, n, G);
+      residual = xsimd::fma (share, residual, of_gradients);
+      by_radius = xsimd::fma (weight, of_gradients, by_radius);
+    }
+    else
+    {
+      residual *= share;
+      for (int a = 0; a < 3; ++a)
+        direct[a] = xsimd::fma (weight * share, n[a], direct[a]);
+    }
+    const B slope = weights_.slope (i, t), force = slope * residual;
+    by_radius = fnma (B (0.5f) * t * t, force, by_radius);
+    for (int a = 0; a < 3; ++a)
+      by_u[a] = xsimd::fma (force, u[a], by_u[a]);
+    all.add (slope, u, t);
+    kinks_.visitSides (node, [&] (int s, bool is_below) { (is_below ? below : above)[s].add (slope, u, t); });
+  }
+
+  B
+  residualOfGradient (const B *u, const B *n, const B (*G)[3]) const
+  {
+    B of_shape[3], of_fit[3], left[3];
     TermsT::slopes (a_, u, of_shape);
     TermsT::slopes (c_, u, of_fit);
     for (int a = 0; a < 3; ++a)
@@ -307,17 +372,9 @@ private:
         of_shape[a] = xsimd::fma (a_[SIZE + e], G[e][a], of_shape[a]);
         of_fit[a] = xsimd::fma (c_[SIZE + e], G[e][a], of_fit[a]);
       }
-      n[a] -= of_fit[a];
+      left[a] = n[a] - of_fit[a];
     }
-    const B of_gradients = dot (of_shape, n);
-    residual = xsimd::fma (share, residual, of_gradients);
-    by_radius = xsimd::fma (weight, of_gradients, by_radius);
-    const B slope = weights_.slope (i, t), force = slope * residual;
-    by_radius = fnma (B (0.5f) * t * t, force, by_radius);
-    for (int a = 0; a < 3; ++a)
-      by_u[a] = xsimd::fma (force, u[a], by_u[a]);
-    all.add (slope, u, t);
-    kinks_.visitSides (node, [&] (int s, bool is_below) { (is_below ? below : above)[s].add (slope, u, t); });
+    return dot (of_shape, left);
   }
 
   const LaneSupport<B> &support_;
@@ -326,9 +383,10 @@ private:
   LaneReach<B> reach_;
   KinksT kinks_;
   B at_x_[MAX_SIZE]; // R(x)
-  B M_[MAX_SIZE * (MAX_SIZE + 1) / 2], b_[MAX_SIZE], raises_[MAX_SIZE];
+  B M_[MAX_SIZE * (MAX_SIZE + 1) / 2], b_[MAX_SIZE];
+  LanePivot<B> pivots_[MAX_SIZE];
   B c_[MAX_SIZE], a_[MAX_SIZE]; // M^-1 b, M^-1 R(x)
-  B weight_, centroid_[3], growth_[3];
+  B weight_, spread_, centroid_[3], growth_[3];
 };
 
 } // namespace erkpa::lanes

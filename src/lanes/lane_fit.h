@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include "lane_raises.h"
 #include "lane_reach.h"
 #include "lane_system.h"
 #include "lane_weights.h"
@@ -96,7 +97,8 @@ public:
         gradient[a] += c_[1 + a];
     }
     if constexpr (RAISES_MATTER)
-      subtractRaises (growth_of_points, gradient);
+      LaneRaises<B, TermsT, LaneWeights<B, KernelT>> (weights_, centroid_, spread_)
+          .subtractFrom (gradient, system_, a_, c_, growth_of_points);
   }
 
   /** \brief Where the gradient needs more than is computed here, or more digits: ten terms ask for doubles. */
@@ -105,10 +107,10 @@ public:
   {
     Mask unsettled = BASIS == Basis::QUADRATIC ? B (0.0f) < B (1.0f) : B (0.0f) > B (1.0f);
     for (int j = RAISES_MATTER ? 4 : 1; j < SIZE; ++j)
-      unsettled = unsettled || system_.raise (j) > B (0.0f);
+      unsettled = unsettled || system_.pivot (j).raise > B (0.0f);
     if constexpr (RAISES_MATTER && SIZE > 4)
       for (int j = 1; j < 4; ++j)
-        unsettled = unsettled || system_.raise (j) > B (0.0f);
+        unsettled = unsettled || system_.pivot (j).raise > B (0.0f);
     return unsettled;
   }
 
@@ -181,77 +183,6 @@ private:
     if constexpr (CONSTRAINT == Constraint::FUNCTIONAL)
       for (int a = 0; a < 3; ++a)
         direct[a] = xsimd::fma (weight * share, n[a], direct[a]);
-  }
-
-  /** \brief What the change of the raised linear pivots does to f: FieldFit::gradientOfRaises () for linear terms. */
-  void
-  subtractRaises (const B *radius_gradient, B *gradient) const
-  {
-    constexpr int LINEAR = SIZE > 1 ? 3 : 0;
-    B v[4][SIZE], of_pivot[4][3], of_spread[3];
-    bool is_none_raised = true;
-    for (int j = 1; j <= LINEAR; ++j)
-    {
-      system_.residualOfTerm (j, v[j]);
-      of_pivot[j][0] = of_pivot[j][1] = of_pivot[j][2] = B (0.0f);
-      if (!xsimd::any (system_.raise (j) > B (0.0f)))
-        continue; // mostly all but the term across the surface
-      sumRaise (radius_gradient, v[j], of_pivot[j], of_spread);
-      is_none_raised = false;
-    }
-    if (is_none_raised)
-      return;
-    B of_raise[4][3];
-    for (int j = 1; j <= LINEAR; ++j)
-    {
-      const B raise = system_.raise (j), slope = system_.raiseSlope (j), pivot = system_.pivot (j);
-      const auto is_raised = raise > B (0.0f);
-      const B floor = xsimd::select (is_raised, system_.floor (j), B (1.0f));
-      const B by_floor = (raise - slope * pivot) / floor;
-      for (int a = 0; a < 3; ++a)
-      {
-        B of_this = fnma (B (2.0f) * pivot, radius_gradient[a], of_pivot[j][a]);
-        for (int k = 1; k < j; ++k)
-          of_this = xsimd::fma (v[j][k] * v[j][k], of_raise[k][a], of_this);
-        const B of_floor = floor * (of_spread[a] / spread_ - B (2.0f) * radius_gradient[a]);
-        of_this = slope * of_this + by_floor * of_floor + B (2.0f) * raise * radius_gradient[a];
-        of_raise[j][a] = xsimd::select (is_raised, of_this, B (0.0f));
-        gradient[a] = fnma (a_[j] * c_[j], of_raise[j][a], gradient[a]);
-      }
-    }
-  }
-
-  /** \brief Σ ∇w (v·R)² and Σ ∇w |u - centroid|². */
-  void
-  sumRaise (const B *radius_gradient, const B *v, B *of_pivot, B *of_spread) const
-  {
-    B by_pivot[3], by_spread[3];
-    for (int a = 0; a < 3; ++a)
-      by_pivot[a] = by_spread[a] = B (0.0f);
-    const auto add = [&] (std::size_t i, B, B t, const B *d)
-    {
-      B R[SIZE], away (0.0f);
-      const B slope = weights_.slope (i, t), squared = t * t;
-      TermsT::evaluate (d, squared, R);
-      const B height = combine<TermsT> (v, R), squared_height = height * height;
-      for (int a = 0; a < 3; ++a)
-      {
-        const B from = d[a] - centroid_[a];
-        away = xsimd::fma (from, from, away);
-      }
-      for (int a = 0; a < 3; ++a)
-      {
-        const B change = slope * xsimd::fma (squared, radius_gradient[a], d[a]);
-        by_pivot[a] = fnma (change, squared_height, by_pivot[a]);
-        by_spread[a] = fnma (change, away, by_spread[a]);
-      }
-    };
-    weights_.visitNodes (add);
-    for (int a = 0; a < 3; ++a)
-    {
-      of_pivot[a] = by_pivot[a];
-      of_spread[a] = by_spread[a];
-    }
   }
 
   const LaneSupport<B> &support_;

@@ -11,20 +11,21 @@ namespace erkpa::lanes
 constexpr int ANY_COUNT = -1;
 
 /** \brief The terms that sharp surfaces add, in lanes: for each a kink θH(θ), then for each three that meet in a corner
- * min (a⁺, b⁺), and after all of these each surface's θ².
+ * min (a⁺, b⁺), and after all of these, where gradients are fitted, each surface's θ².
  *
  * See Enrichment: a kink is seen from the side on which it is zero at x, where it may be; it counts where the support
  * holds nodes on either side of its surface; its square fades where few lie on one of them, and all terms of a limited
  * surface fade with it. A term's value at a node and its slope are in coordinates u = (y - x) / ε, as θ / ε.
  * \tparam COUNT so many surfaces, without corners: loops over them can be unrolled; or ANY_COUNT
+ * \tparam HAS_SQUARES whether there are θ²
  */
-template <typename B, int COUNT>
+template <typename B, int COUNT, bool HAS_SQUARES>
 class LaneKinks
 {
 public:
   static constexpr int MAX_COUNT = COUNT == ANY_COUNT ? static_cast<int> (MAX_SURFACES) : COUNT;
   static constexpr int MAX_CORNERS = COUNT == ANY_COUNT ? LaneSurfaces<B>::MAX_CORNERS : 0;
-  static constexpr int MAX_TERMS = 2 * MAX_COUNT + MAX_CORNERS;
+  static constexpr int MAX_TERMS = (HAS_SQUARES ? 2 : 1) * MAX_COUNT + MAX_CORNERS;
 
   /** \param[in] first place of the evaluation point in the first lane
    * \param[in] scale 1 / ε
@@ -59,10 +60,10 @@ public:
   int
   terms () const
   {
-    return 2 * surfaces () + corners ();
+    return (HAS_SQUARES ? 2 : 1) * surfaces () + corners ();
   }
 
-  /** \brief Place of a surface's θ² among the terms. */
+  /** \brief Place of a surface's θ² among the terms, which may end before it. */
   int
   squareOf (int surface) const
   {
@@ -82,12 +83,13 @@ public:
       const B theta = B (surface.theta[node]) * scale_, height = sign_[s] * theta, on = isOn (height, s);
       there &= xsimd::any (on > B (0.5f)) ? ~0u : ~(1u << s);
       R[s] = on * height;
-      R[squareOf (s)] = theta * theta;
       for (int a = 0; a < 3; ++a)
+        G[s][a] = on * sign_[s] * B (surface.gradient[a][node]);
+      if constexpr (HAS_SQUARES)
       {
-        const B g (surface.gradient[a][node]);
-        G[s][a] = on * sign_[s] * g;
-        G[squareOf (s)][a] = B (2.0f) * theta * g;
+        R[squareOf (s)] = theta * theta;
+        for (int a = 0; a < 3; ++a)
+          G[squareOf (s)][a] = B (2.0f) * theta * B (surface.gradient[a][node]);
       }
     }
     for (int k = 0; k < corners (); ++k)
@@ -251,12 +253,14 @@ private:
     open_[s] = surface.reversible ? xsimd::select (holds_x, one, zero) : zero;
     const B height = sign_[s] * theta * scale_, on = isOn (height, s);
     at_x_[s] = on * height;
-    at_x_[squareOf (s)] = theta * theta * scale_ * scale_;
+    if constexpr (HAS_SQUARES)
+      at_x_[squareOf (s)] = theta * theta * scale_ * scale_;
     for (int a = 0; a < 3; ++a)
     {
       const B g = B::load_unaligned (surface.gradient_at[a] + first_);
       slope_at_x_[s][a] = on * sign_[s] * g;
-      slope_at_x_[squareOf (s)][a] = B (2.0f) * theta * scale_ * g;
+      if constexpr (HAS_SQUARES)
+        slope_at_x_[squareOf (s)][a] = B (2.0f) * theta * scale_ * g;
     }
   }
 

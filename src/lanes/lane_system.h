@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include "lane_pivot.h"
 #include "lane_terms.h"
 
 namespace erkpa::lanes
@@ -28,8 +29,8 @@ public:
 #pragma GCC unroll 10
     for (int j = 0; j < SIZE; ++j)
     {
-      floors_[j] = floorOf (constraint, TermsT::degree (j), weight, spread);
-      raisePivot (j);
+      pivots_[j] = LanePivot<B> (M[at (j, j)], floorOfPolynomial (constraint, TermsT::degree (j), weight, spread));
+      M[at (j, j)] = pivots_[j].raised;
       inverses_[j] = one / M[at (j, j)];
       B factors[SIZE];
       for (int i = j + 1; i < SIZE; ++i)
@@ -64,63 +65,14 @@ public:
     backSubstitute (v, j);
   }
 
-  B
+  /** \brief Of term j, as it was raised. */
+  const LanePivot<B> &
   pivot (int j) const
   {
     return pivots_[j];
   }
 
-  B
-  floor (int j) const
-  {
-    return floors_[j];
-  }
-
-  /** \brief ρ_j; zero for a term the nodes determine. */
-  B
-  raise (int j) const
-  {
-    return raises_[j];
-  }
-
-  /** \brief dρ_j / dpivot_j. */
-  B
-  raiseSlope (int j) const
-  {
-    return slopes_[j];
-  }
-
 private:
-  /** \brief See floorOfPolynomial (). */
-  static B
-  floorOf (Constraint constraint, int degree, B weight, B spread)
-  {
-    if (degree == 0)
-      return B (0.0f);
-    if (constraint == Constraint::FUNCTIONAL)
-      return degree == 1 ? B (2e-2f) * spread : B (1e-3f) * spread * spread / weight;
-    return B (degree == 1 ? 1e-10f : 1e-4f) * weight;
-  }
-
-  void
-  raisePivot (int j)
-  {
-    constexpr float LEAST = 1e-9f;
-    B pivot = M[at (j, j)];
-    const B floor = floors_[j], zero (0.0f), one (1.0f);
-    pivots_[j] = pivot;
-    raises_[j] = slopes_[j] = zero;
-    M[at (j, j)] = xsimd::select (pivot > zero, pivot, one);
-    const auto is_low = pivot < floor;
-    if (!xsimd::any (is_low))
-      return;
-    const B share = xsimd::max (pivot / xsimd::select (floor > zero, floor, one), B (LEAST));
-    raises_[j] = xsimd::select (is_low, floor * (one - share) * (one - share) / share, zero);
-    slopes_[j] = xsimd::select (is_low && share > B (LEAST), one - one / (share * share), zero);
-    pivot = xsimd::select (is_low, floor * share + raises_[j], pivot);
-    M[at (j, j)] = xsimd::select (pivot > zero, pivot, one);
-  }
-
   void
   backSubstitute (B *v, int last) const
   {
@@ -130,7 +82,7 @@ private:
   }
 
   B inverses_[SIZE]; // 1 / D
-  B pivots_[SIZE], floors_[SIZE], raises_[SIZE], slopes_[SIZE];
+  LanePivot<B> pivots_[SIZE];
 };
 
 } // namespace erkpa::lanes

@@ -104,7 +104,7 @@ struct Pencil
   float scale_a, scale_b;
 };
 
-/** \brief Those that pass near the points; for the Hermite constraint only. */
+/** \brief Those that pass near the points; not with Constraint::VALUES. */
 struct SharpSurfaces
 {
   static constexpr std::size_t MAX_PENCILS = 4;

@@ -1,0 +1,61 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "lane_vector.h"
+#include "lanes.h"
+
+namespace erkpa::lanes
+{
+
+/** \brief See erkpa::floorOfPolynomial ().
+ * \param[in] weight,spread Σ w and Σ w |u - centroid|²
+ */
+template <typename B>
+B
+floorOfPolynomial (Constraint constraint, int degree, B weight, B spread)
+{
+  if (degree == 0)
+    return B (0.0f);
+  if (constraint == Constraint::FUNCTIONAL)
+    return degree == 1 ? B (2e-2f) * spread : B (1e-3f) * spread * spread / weight;
+  return B (degree == 1 ? 1e-10f : 1e-4f) * weight;
+}
+
+/** \brief See erkpa::floorOfEnrichment ().
+ * \param[in] moment the term's own
+ */
+template <typename B>
+B
+floorOfKink (Constraint constraint, B weight, B moment)
+{
+  return constraint == Constraint::HERMITE ? B (2e-5f) * weight : B (1e-3f) * moment;
+}
+
+/** \brief A pivot of the moment matrix, raised where it is below its floor: see MomentSystem. */
+template <typename B>
+struct LanePivot
+{
+  B pivot, floor; ///< as they were
+  B raise, slope; ///< ρ, and dρ / dpivot
+  B raised;       ///< 1 where there is nothing to determine
+
+  /** \brief Left to be assigned to. */
+  LanePivot () = default;
+
+  LanePivot (B of_nodes, B least) : pivot (of_nodes), floor (least), raise (0.0f), slope (0.0f)
+  {
+    constexpr float LEAST = 1e-9f;
+    const B zero (0.0f), one (1.0f);
+    raised = xsimd::select (pivot > zero, pivot, one);
+    const auto is_low = pivot < floor;
+    if (!xsimd::any (is_low))
+      return;
+    const B share = xsimd::max (pivot / xsimd::select (floor > zero, floor, one), B (LEAST));
+    raise = xsimd::select (is_low, floor * (one - share) * (one - share) / share, zero);
+    slope = xsimd::select (is_low && share > B (LEAST), one - one / (share * share), zero);
+    const B with_raise = xsimd::select (is_low, floor * share + raise, pivot);
+    raised = xsimd::select (with_raise > zero, with_raise, one);
+  }
+};
+
+} // namespace erkpa::lanes
