@@ -28,7 +28,6 @@ isPlainModel (const SharpSurfaceParts &parts)
 BlockEnrichment::BlockEnrichment (const ImplicitField &field, double unit)
     : field_ (field), inverse_unit_ (1.0 / unit),
       can_evaluate_ (field.options ().constraint != Constraint::OFFSURFACE &&
-                     field.options ().enrichment == EnrichmentType::KINK &&
                      (field.options ().order == Order::LINEAR || field.options ().order == Order::SPHERICAL))
 {
   for (const SharpSurface::ConstPtr &surface : field.enrichingSurfaces ())
@@ -188,6 +187,7 @@ BlockEnrichment::view () const
 {
   lanes::SharpSurfaces sharp{};
   sharp.count = used_;
+  sharp.jumps = field_.options ().enrichment == EnrichmentType::JUMP;
   for (std::size_t s = 0; s < used_; ++s)
   {
     const Values &values = values_[s];

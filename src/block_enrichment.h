@@ -19,8 +19,8 @@ namespace erkpa
 /** \brief The sharp surfaces that enrich the field at points of one ball, as the lanes see them: Enrichment's quick
  * double.
  *
- * Kinks at models, limited or not, and their corners, for gradients and functional values. What is warped or a function
- * is left to LocalField.
+ * Kinks and jumps at models, limited or not, and their corners, for gradients and functional values. What is warped or
+ * a function is left to LocalField.
  */
 class BlockEnrichment
 {

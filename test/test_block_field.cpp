@@ -374,26 +374,34 @@ TEST_F (BlockFieldTest, AgreesWithTheDefinitionWhereSharpSurfacesPass)
     }
 }
 
-/** \brief The paper's own way, eq. (2) and (22): no squares, and pivots that are raised where nodes are flat. */
+/** \brief The paper's own way, eq. (2) and (22), and with H(θ) in its place: no squares, and pivots that are raised
+ * where nodes are flat. */
 TEST_F (BlockFieldTest, AgreesWithTheDefinitionWhereSharpSurfacesPassFunctionalValues)
 {
   const Vector3d half (0.5, 0.35, 0.25);
-  for (const Order order : {Order::LINEAR, Order::SPHERICAL})
-    for (const bool by_nearest : {true, false})
-      for (const bool is_limited : {false, true})
-      {
-        FieldOptions options = optionsOf (order, by_nearest ? 20 : 0, by_nearest ? 0.0 : 0.12);
-        options.constraint = erkpa::Constraint::FUNCTIONAL;
-        erkpa::Extent::ConstPtr extent;
-        ASSERT_TRUE (erkpa::makeBoxExtent ({-0.45, -0.4, -0.2}, {0.3, 0.2, 0.3}, extent).ok ());
-        for (const Eigen::Vector4d &plane : shapes::boxBisectors (half))
-          options.sharp_surfaces.push_back (is_limited ? erkpa::makeLimited (shapes::plane (plane), extent)
-                                                       : shapes::plane (plane));
-        SCOPED_TRACE (by_nearest ? "nearest" : "radius");
-        // Pivots that are raised turn squares, of which the spherical basis has one: many places want the definition.
-        expectAgreement (*shapes::field (shapes::box (6000, half), options), placesOnBox (half),
-                         order == Order::LINEAR ? 0.9 : 0.1);
-      }
+  erkpa::Extent::ConstPtr extent;
+  ASSERT_TRUE (erkpa::makeBoxExtent ({-0.45, -0.4, -0.2}, {0.3, 0.2, 0.3}, extent).ok ());
+  erkpa::SharpSurface::ConstPtr ball;
+  ASSERT_TRUE (erkpa::makeSharpSurface (erkpa::SurfaceModel::SPHERE, {0.5f, 0.0f, 0.0f, 0.2f}, ball).ok ());
+  for (const erkpa::EnrichmentType enrichment : {erkpa::EnrichmentType::KINK, erkpa::EnrichmentType::JUMP})
+    for (const Order order : {Order::LINEAR, Order::SPHERICAL})
+      for (const bool by_nearest : {true, false})
+        for (const bool is_limited : {false, true})
+        {
+          FieldOptions options = optionsOf (order, by_nearest ? 20 : 0, by_nearest ? 0.0 : 0.12);
+          options.constraint = Constraint::FUNCTIONAL;
+          options.enrichment = enrichment;
+          options.sharp_surfaces.push_back (ball);
+          for (const Eigen::Vector4d &plane : shapes::boxBisectors (half))
+            options.sharp_surfaces.push_back (is_limited ? erkpa::makeLimited (shapes::plane (plane), extent)
+                                                         : shapes::plane (plane));
+          SCOPED_TRACE (std::string (by_nearest ? "nearest" : "radius") + (is_limited ? " limited" : "") +
+                        (enrichment == erkpa::EnrichmentType::JUMP ? " jump" : "") +
+                        (order == Order::LINEAR ? " linear" : ""));
+          // Pivots that are raised turn squares, of which the spherical basis has one: many places want the definition.
+          expectAgreement (*shapes::field (shapes::box (6000, half), options), placesOnBox (half),
+                           order == Order::LINEAR ? 0.9 : 0.1);
+        }
 }
 
 /** \brief Limited ones fade around the ends of their extents, and so do the corners that they make with others. */

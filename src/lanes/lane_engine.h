@@ -168,7 +168,7 @@ evaluateWith (const Settings &settings, const Nodes &nodes, const Points &points
                    });
 }
 
-template <typename B, Basis BASIS, Constraint CONSTRAINT, template <typename> class KernelT>
+template <typename B, Basis BASIS, Constraint CONSTRAINT, LaneEnrichment FORM, template <typename> class KernelT>
 void
 evaluateEnriched (const Settings &settings, const Nodes &nodes, const Points &points, const SharpSurfaces &sharp,
                   const Scratch &scratch, const Samples &samples)
@@ -176,6 +176,7 @@ evaluateEnriched (const Settings &settings, const Nodes &nodes, const Points &po
   const LaneEngine<B> engine (settings, nodes, points, scratch, samples);
   const auto take_with = [&] (auto fit, const LaneSupport<B> &support, std::size_t first)
   { engine.store (support, fit, first); };
+  constexpr int ONE = CONSTRAINT == Constraint::HERMITE ? 1 : ANY_COUNT; // the default is worth a case of its own
   LaneMoments<B, BASIS, CONSTRAINT, KernelT> moments (settings);
   engine.evaluate (
       [] (const LaneSupport<B> *, std::size_t) {},
@@ -189,23 +190,12 @@ evaluateEnriched (const Settings &settings, const Nodes &nodes, const Points &po
                      support, first);
         }
         else if (near.count == 1)
-          take_with (LaneEnrichedFit<B, BASIS, CONSTRAINT, KernelT, 1> (settings, near, first, support), support,
-                     first);
+          take_with (LaneEnrichedFit<B, BASIS, CONSTRAINT, KernelT, FORM, ONE> (settings, near, first, support),
+                     support, first);
         else
-          take_with (LaneEnrichedFit<B, BASIS, CONSTRAINT, KernelT, ANY_COUNT> (settings, near, first, support),
+          take_with (LaneEnrichedFit<B, BASIS, CONSTRAINT, KernelT, FORM, ANY_COUNT> (settings, near, first, support),
                      support, first);
       });
-}
-
-template <typename B, Basis BASIS, Constraint CONSTRAINT>
-void
-evaluateEnriched (const Settings &settings, const Nodes &nodes, const Points &points, const SharpSurfaces &sharp,
-                  const Scratch &scratch, const Samples &samples)
-{
-  if (settings.kernel == Kernel::PAPER)
-    evaluateEnriched<B, BASIS, CONSTRAINT, PaperKernel> (settings, nodes, points, sharp, scratch, samples);
-  else
-    evaluateEnriched<B, BASIS, CONSTRAINT, AnyKernel> (settings, nodes, points, sharp, scratch, samples);
 }
 
 template <typename B, Basis BASIS>
@@ -213,10 +203,19 @@ void
 evaluateEnriched (const Settings &settings, const Nodes &nodes, const Points &points, const SharpSurfaces &sharp,
                   const Scratch &scratch, const Samples &samples)
 {
-  if (settings.constraint == Constraint::FUNCTIONAL)
-    evaluateEnriched<B, BASIS, Constraint::FUNCTIONAL> (settings, nodes, points, sharp, scratch, samples);
+  constexpr Constraint HERMITE = Constraint::HERMITE, FUNCTIONAL = Constraint::FUNCTIONAL;
+  if (settings.constraint == FUNCTIONAL && sharp.jumps)
+    evaluateEnriched<B, BASIS, FUNCTIONAL, LaneEnrichment::JUMPS, AnyKernel> (settings, nodes, points, sharp, scratch,
+                                                                              samples);
+  else if (settings.constraint == FUNCTIONAL)
+    evaluateEnriched<B, BASIS, FUNCTIONAL, LaneEnrichment::KINKS, AnyKernel> (settings, nodes, points, sharp, scratch,
+                                                                              samples);
+  else if (settings.kernel == Kernel::PAPER)
+    evaluateEnriched<B, BASIS, HERMITE, LaneEnrichment::KINKS_AND_SQUARES, PaperKernel> (settings, nodes, points, sharp,
+                                                                                         scratch, samples);
   else
-    evaluateEnriched<B, BASIS, Constraint::HERMITE> (settings, nodes, points, sharp, scratch, samples);
+    evaluateEnriched<B, BASIS, HERMITE, LaneEnrichment::KINKS_AND_SQUARES, AnyKernel> (settings, nodes, points, sharp,
+                                                                                       scratch, samples);
 }
 
 template <typename B, Basis BASIS, Constraint CONSTRAINT>

@@ -16,15 +16,16 @@ namespace erkpa::lanes
  * polynomials. A lane where a term does not count has zeros for it. All sums are taken in u = (x_i - x) / ε.
  * \tparam COUNT of the sharp surfaces: see LaneKinks
  */
-template <typename B, Basis BASIS, Constraint CONSTRAINT, template <typename> class KernelT, int COUNT>
+template <typename B, Basis BASIS, Constraint CONSTRAINT, template <typename> class KernelT, LaneEnrichment FORM,
+          int COUNT>
 class LaneEnrichedFit
 {
 public:
   static constexpr bool IS_HERMITE = CONSTRAINT == Constraint::HERMITE;
-  static_assert (IS_HERMITE || CONSTRAINT == Constraint::FUNCTIONAL);
+  static_assert (IS_HERMITE ? FORM == LaneEnrichment::KINKS_AND_SQUARES : CONSTRAINT == Constraint::FUNCTIONAL);
 
   using Mask = decltype (B () < B ());
-  using KinksT = LaneKinks<B, COUNT, IS_HERMITE>;
+  using KinksT = LaneKinks<B, COUNT, FORM>;
   static constexpr int SIZE = Terms<B, BASIS>::SIZE;
   static constexpr bool IS_ENRICHED = true;
 

@@ -17,12 +17,14 @@ constexpr int ANY_COUNT = -1;
  * holds nodes on either side of its surface; its square fades where few lie on one of them, and all terms of a limited
  * surface fade with it. A term's value at a node and its slope are in coordinates u = (y - x) / ε, as θ / ε.
  * \tparam COUNT so many surfaces, without corners: loops over them can be unrolled; or ANY_COUNT
- * \tparam HAS_SQUARES whether there are θ²
+ * \tparam FORM what the terms are; jumps are H(θ), and H(a)H(b) and H(b)H(c) at a corner, in the place of kinks
  */
-template <typename B, int COUNT, bool HAS_SQUARES>
+template <typename B, int COUNT, LaneEnrichment FORM>
 class LaneKinks
 {
 public:
+  static constexpr bool HAS_SQUARES = FORM == LaneEnrichment::KINKS_AND_SQUARES,
+                        ARE_JUMPS = FORM == LaneEnrichment::JUMPS;
   static constexpr int MAX_COUNT = COUNT == ANY_COUNT ? static_cast<int> (MAX_SURFACES) : COUNT;
   static constexpr int MAX_CORNERS = COUNT == ANY_COUNT ? LaneSurfaces<B>::MAX_CORNERS : 0;
   static constexpr int MAX_TERMS = (HAS_SQUARES ? 2 : 1) * MAX_COUNT + MAX_CORNERS;
@@ -82,9 +84,9 @@ public:
       const Surface &surface = *near_.surfaces[s];
       const B theta = B (surface.theta[node]) * scale_, height = sign_[s] * theta, on = isOn (height, s);
       there &= xsimd::any (on > B (0.5f)) ? ~0u : ~(1u << s);
-      R[s] = on * height;
+      R[s] = ARE_JUMPS ? on : on * height;
       for (int a = 0; a < 3; ++a)
-        G[s][a] = on * sign_[s] * B (surface.gradient[a][node]);
+        G[s][a] = ARE_JUMPS ? B (0.0f) : on * sign_[s] * B (surface.gradient[a][node]);
       if constexpr (HAS_SQUARES)
       {
         R[squareOf (s)] = theta * theta;
@@ -194,7 +196,10 @@ public:
     const B change = is_square ? ofSquare (term - squareOf (0), axis, of_all, of_below, of_above, radius_gradient)
                                : weight_ * extentChange (term, axis, radius_gradient);
     return fade / weight_ * of_all - B (2.0f * FADE) * left / (p * p * p) * change +
-           B (is_square ? 4.0f : 2.0f) * fade * radius_gradient;
+           B (is_square   ? 4.0f
+              : ARE_JUMPS ? 0.0f
+                          : 2.0f) *
+               fade * radius_gradient;
   }
 
 private:
@@ -249,16 +254,17 @@ private:
     const Surface &surface = *near_.surfaces[s];
     const B theta = B::load_unaligned (surface.theta_at + first_), one (1.0f), zero (0.0f);
     const auto holds_x = theta >= zero;
-    sign_[s] = surface.reversible ? xsimd::select (holds_x, -one, one) : one;
-    open_[s] = surface.reversible ? xsimd::select (holds_x, one, zero) : zero;
+    const bool is_reversible = ARE_JUMPS || surface.reversible;
+    sign_[s] = is_reversible ? xsimd::select (holds_x, -one, one) : one;
+    open_[s] = is_reversible ? xsimd::select (holds_x, one, zero) : zero;
     const B height = sign_[s] * theta * scale_, on = isOn (height, s);
-    at_x_[s] = on * height;
+    at_x_[s] = ARE_JUMPS ? on : on * height;
     if constexpr (HAS_SQUARES)
       at_x_[squareOf (s)] = theta * theta * scale_ * scale_;
     for (int a = 0; a < 3; ++a)
     {
       const B g = B::load_unaligned (surface.gradient_at[a] + first_);
-      slope_at_x_[s][a] = on * sign_[s] * g;
+      slope_at_x_[s][a] = ARE_JUMPS ? zero : on * sign_[s] * g;
       if constexpr (HAS_SQUARES)
         slope_at_x_[squareOf (s)][a] = B (2.0f) * theta * scale_ * g;
     }
@@ -273,25 +279,31 @@ private:
                                      height_b = B (corner.scale_b) * B::load_unaligned (b.theta_at + first_);
     // One that fades is always seen from the same side: see Enrichment::addTerm ().
     const auto holds_x = height_a >= zero && height_b >= zero && presence (surfaces () + k) >= one;
-    const B sign = a.reversible && b.reversible ? xsimd::select (holds_x, -one, one) : one;
+    const B sign = ARE_JUMPS || (a.reversible && b.reversible) ? xsimd::select (holds_x, -one, one) : one;
     is_behind_[k] = sign < zero;
     const auto is_b = sign * height_b < sign * height_a;
     const B scale = sign * xsimd::select (is_b, B (corner.scale_b), B (corner.scale_a));
     const B height = sign * xsimd::select (is_b, height_b, height_a) * scale_;
-    const auto is_on = height > zero || (height >= zero && scale > zero);
-    at_x_[surfaces () + k] = xsimd::select (is_on, height, zero);
+    const auto is_on = height > zero || (height >= zero && (ARE_JUMPS ? sign : scale) > zero);
+    at_x_[surfaces () + k] = xsimd::select (is_on, ARE_JUMPS ? one : height, zero);
     for (int i = 0; i < 3; ++i)
     {
       const B slope = xsimd::select (is_b, B::load_unaligned (b.gradient_at[i] + first_),
                                      B::load_unaligned (a.gradient_at[i] + first_));
-      slope_at_x_[surfaces () + k][i] = xsimd::select (is_on, scale * slope, zero);
+      slope_at_x_[surfaces () + k][i] = ARE_JUMPS ? zero : xsimd::select (is_on, scale * slope, zero);
     }
   }
 
   void
   evaluateCorner (std::size_t node, int k, B &value, B *gradient) const
   {
-    float height = 0.0f, slope[3], height_behind = 0.0f, slope_behind[3];
+    float height = 0.0f, slope[3] = {}, height_behind = 0.0f, slope_behind[3] = {};
+    if constexpr (ARE_JUMPS)
+    {
+      value = xsimd::select (is_behind_[k], B (near_.jumpOfCorner (k, node, -1.0f)),
+                             B (near_.jumpOfCorner (k, node, 1.0f)));
+      return; // slopes are not asked for
+    }
     near_.evaluateCorner (k, node, 1.0f, height, slope);
     near_.evaluateCorner (k, node, -1.0f, height_behind, slope_behind);
     value = xsimd::select (is_behind_[k], B (height_behind), B (height)) * scale_;

@@ -8,13 +8,21 @@
 namespace erkpa::lanes
 {
 
+/** \brief What sharp surfaces add. */
+enum class LaneEnrichment
+{
+  KINKS_AND_SQUARES, ///< θH(θ) and θ²
+  KINKS,
+  JUMPS ///< H(θ)
+};
+
 /** \brief Of the sharp surfaces near a ball those that may pass between the nodes of a lane's support. */
 template <typename B>
 struct LaneSurfaces
 {
-  static constexpr int MAX_CORNERS = static_cast<int> (SharpSurfaces::MAX_PENCILS);
+  static constexpr int MAX_CORNERS = 2 * static_cast<int> (SharpSurfaces::MAX_PENCILS);
 
-  /** \brief The term of three surfaces that meet: min (scale_a a, scale_b b), where that is positive. */
+  /** \brief A term of three surfaces that meet: min (scale_a a, scale_b b), where that is positive; jumps have two. */
   struct Corner
   {
     int a, b, c;
@@ -47,7 +55,11 @@ struct LaneSurfaces
       const Pencil &pencil = sharp.pencils[p];
       const int a = place[pencil.surfaces[0]], b = place[pencil.surfaces[1]], c = place[pencil.surfaces[2]];
       if (a >= 0 && b >= 0 && c >= 0)
+      {
         corners[corner_count++] = {a, b, c, pencil.scale_a, pencil.scale_b};
+        if (sharp.jumps)
+          corners[corner_count++] = {b, c, a, 1.0f, 1.0f};
+      }
     }
   }
 
@@ -71,6 +83,16 @@ struct LaneSurfaces
     height = is_on ? height : 0.0f;
     for (int i = 0; i < 3; ++i)
       slope[i] = is_on ? scale * lower.gradient[i][node] : 0.0f;
+  }
+
+  /** \brief Where a corner's term is a jump, it at a node. */
+  float
+  jumpOfCorner (int k, std::size_t node, float sign) const
+  {
+    const Corner &corner = corners[k];
+    const float a = sign * corner.scale_a * surfaces[corner.a]->theta[node],
+                b = sign * corner.scale_b * surfaces[corner.b]->theta[node], height = a < b ? a : b;
+    return height > 0.0f || (height >= 0.0f && sign > 0.0f) ? 1.0f : 0.0f;
   }
 
 private:

@@ -110,6 +110,7 @@ struct SharpSurfaces
   static constexpr std::size_t MAX_PENCILS = 4;
 
   std::size_t count; ///< 0: none, and no enrichment
+  bool jumps;        ///< the field jumps across them: functional values only
   Surface surfaces[MAX_SURFACES];
   std::size_t pencil_count;
   Pencil pencils[MAX_PENCILS];
