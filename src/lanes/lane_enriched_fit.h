@@ -286,8 +286,7 @@ private:
       moments[j] = M_[at (j, j)];
     for (int j = 0; j < size (); ++j)
     {
-      pivots_[j] = LanePivot<B> (M_[at (j, j)], floorOf (j, moments[j]));
-      M_[at (j, j)] = pivots_[j].raised;
+      M_[at (j, j)] = pivots_[j].raiseFrom (M_[at (j, j)], floorOf (j, moments[j]));
       if (j >= SIZE + kinks_.firstFading ())
         M_[at (j, j)] += kinks_.fadeOf (j - SIZE);
       const B inverse = B (1.0f) / M_[at (j, j)];

@@ -37,24 +37,24 @@ struct LanePivot
 {
   B pivot, floor; ///< as they were
   B raise, slope; ///< ρ, and dρ / dpivot
-  B raised;       ///< 1 where there is nothing to determine
 
-  /** \brief Left to be assigned to. */
-  LanePivot () = default;
-
-  LanePivot (B of_nodes, B least) : pivot (of_nodes), floor (least), raise (0.0f), slope (0.0f)
+  /** \brief \return ρ + pivot; 1 where there is nothing to determine */
+  B
+  raiseFrom (B of_nodes, B least)
   {
     constexpr float LEAST = 1e-9f;
     const B zero (0.0f), one (1.0f);
-    raised = xsimd::select (pivot > zero, pivot, one);
+    pivot = of_nodes;
+    floor = least;
+    raise = slope = zero;
     const auto is_low = pivot < floor;
     if (!xsimd::any (is_low))
-      return;
+      return xsimd::select (pivot > zero, pivot, one);
     const B share = xsimd::max (pivot / xsimd::select (floor > zero, floor, one), B (LEAST));
     raise = xsimd::select (is_low, floor * (one - share) * (one - share) / share, zero);
     slope = xsimd::select (is_low && share > B (LEAST), one - one / (share * share), zero);
-    const B with_raise = xsimd::select (is_low, floor * share + raise, pivot);
-    raised = xsimd::select (with_raise > zero, with_raise, one);
+    const B raised = xsimd::select (is_low, floor * share + raise, pivot);
+    return xsimd::select (raised > zero, raised, one);
   }
 };
 

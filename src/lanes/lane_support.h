@@ -207,8 +207,8 @@ private:
     float middle[3], reach = 0.0f;
     findBall (supports, count, middle, reach);
     const B limit (reach * reach);
-    std::size_t listed = 0;
-    for (std::size_t first = 0; first < value_points; first += WIDTH)
+    std::size_t listed = 0, first = 0;
+    const auto list = [&] (std::size_t left)
     {
       B x[3], d[3];
       for (std::size_t a = 0; a < 3; ++a)
@@ -216,7 +216,6 @@ private:
         x[a] = B::load_unaligned (from[a] + first);
         d[a] = x[a] - B (middle[a]);
       }
-      const std::size_t left = value_points - first;
       const Packing<B> packing (limit - squaredLength (d), left);
       for (std::size_t a = 0; a < 3; ++a)
         packing.pack (x[a], near_[a] + listed);
@@ -225,7 +224,11 @@ private:
           packing.pack (Packing<B>::load (from[column] + first, left), near_[column] + listed);
       packing.packNumbers (first, list_ + listed);
       listed += packing.size ();
-    }
+    };
+    for (; first + WIDTH <= value_points; first += WIDTH)
+      list (WIDTH);
+    if (first < value_points)
+      list (value_points - first);
     listed_ = listed;
     for (on_surface_ = listed_; on_surface_ > 0 && list_[on_surface_ - 1] >= nodes_->on_surface;)
       --on_surface_;

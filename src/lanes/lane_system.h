@@ -29,8 +29,8 @@ public:
 #pragma GCC unroll 10
     for (int j = 0; j < SIZE; ++j)
     {
-      pivots_[j] = LanePivot<B> (M[at (j, j)], floorOfPolynomial (constraint, TermsT::degree (j), weight, spread));
-      M[at (j, j)] = pivots_[j].raised;
+      const B floor = floorOfPolynomial (constraint, TermsT::degree (j), weight, spread);
+      M[at (j, j)] = pivots_[j].raiseFrom (M[at (j, j)], floor);
       inverses_[j] = one / M[at (j, j)];
       B factors[SIZE];
       for (int i = j + 1; i < SIZE; ++i)
