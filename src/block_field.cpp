@@ -19,10 +19,11 @@ constexpr double ROUNDING = 1e-5; // of a length, in float
 
 /** \brief What ε nowhere exceeds within \a extent of a place where it is \a radius, or next to nowhere. */
 double
-trustedRadius (double radius, double extent)
+trustedRadius (double radius, double extent, bool on_surface)
 {
-  constexpr double UNEVEN = 1.25, ASIDE = 0.6; // nodes are closer together in the middle; points are off the surface
-  return std::min (radius + extent, std::hypot (UNEVEN * radius, ASIDE * extent));
+  // Nodes are closer together in the middle; points are off the surface, all of them or where they have moved to.
+  constexpr double UNEVEN = 1.25, ASIDE = 0.6, MOVED = 0.2;
+  return std::min (radius + extent, std::hypot (UNEVEN * radius, (on_surface ? MOVED : ASIDE) * extent));
 }
 
 } // namespace
@@ -55,7 +56,7 @@ BlockField::setReach (double share, double offset, double near_enough)
 }
 
 bool
-BlockField::gather (const Eigen::Vector3d &center, double extent)
+BlockField::gather (const Eigen::Vector3d &center, double extent, bool on_surface)
 {
   clearPoints ();
   if (!can_evaluate_)
@@ -63,7 +64,7 @@ BlockField::gather (const Eigen::Vector3d &center, double extent)
   // A middle that floats can say: then differences from it are exact.
   center_ = center.cast<float> ().cast<double> ();
   const double all = extent_ = extent + (center - center_).norm ();
-  if (!findReach (center_, all))
+  if (!findReach (center_, all, on_surface))
     return false;
   has_separations_ = faces_.gather (center_, all);
   const bool by_nearest = field_.supportSize ().kind () == SupportSize::Kind::NEAREST;
@@ -77,7 +78,7 @@ BlockField::gather (const Eigen::Vector3d &center, double extent)
 
 /** \brief See Support::gather (). */
 bool
-BlockField::findReach (const Eigen::Vector3d &center, double extent)
+BlockField::findReach (const Eigen::Vector3d &center, double extent, bool on_surface)
 {
   const SupportSize &size = field_.supportSize ();
   if (size.kind () != SupportSize::Kind::NEAREST)
@@ -93,13 +94,13 @@ BlockField::findReach (const Eigen::Vector3d &center, double extent)
   double guess = 1.15 * (center_radius_ > 0.0 ? std::min (center_radius_, 2.0 * unit_) : unit_);
   for (; center.norm () < FARTHEST && guess < FARTHEST; guess *= 2.0)
   {
-    nodes_.copyAround (center, trustedRadius (guess, extent) + extent);
+    nodes_.copyAround (center, trustedRadius (guess, extent, on_surface) + extent);
     if (nodes_.count () < k)
       continue;
     center_radius_ = nodes_.boundOfKth (k, guess);
     if (!(center_radius_ <= guess))
       continue;
-    trusted_ = trustedRadius (center_radius_, extent);
+    trusted_ = trustedRadius (center_radius_, extent, on_surface);
     reach_ = trusted_ + extent;
     return true;
   }

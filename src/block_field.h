@@ -43,10 +43,11 @@ public:
   }
 
   /** \brief Prepare for points within \a extent of \a center (local frame).
+   * \param[in] on_surface whether they are expected on f = iso, more or less: fewer nodes will do
    * \return false where the field is none of canEvaluate (), or no nodes are in reach
    */
   bool
-  gather (const Eigen::Vector3d &center, double extent);
+  gather (const Eigen::Vector3d &center, double extent, bool on_surface = false);
 
   /** \brief Forget the points, then take up others. */
   void
@@ -166,7 +167,7 @@ private:
   };
 
   bool
-  findReach (const Eigen::Vector3d &center, double extent);
+  findReach (const Eigen::Vector3d &center, double extent, bool on_surface);
 
   /** \brief How far the support of a point goes, at most. */
   double

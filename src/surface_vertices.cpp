@@ -122,7 +122,7 @@ public:
         continue;
       const Eigen::Vector3d center = box.center ();
       const double extent = 0.5 * box.diagonal ().norm ();
-      if (worker.block.gather (center, extent))
+      if (worker.block.gather (center, extent, true))
         placeTogether (worker.block, roots);
       if (roots.empty ())
         continue;

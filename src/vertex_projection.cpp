@@ -59,7 +59,7 @@ public:
     worker.alone.clear ();
     for (std::size_t i = group.first; i < group.last; ++i)
       worker.together.push_back ({first + i, vertices_.positions[first + i], vertices_.positions[first + i]});
-    if (worker.block.gather (group.center, group.extent + limit_))
+    if (worker.block.gather (group.center, group.extent + limit_, true))
       for (int step = 0; step <= STEPS && !worker.together.empty (); ++step)
         stepTogether (worker, step == STEPS);
     worker.alone.insert (worker.alone.end (), worker.together.begin (), worker.together.end ());
