@@ -131,6 +131,16 @@ TEST_F (ErkpaReconstruct, NamesTheFirstBrokenLineOfALongText)
   expectRefuses ("long.xyz out.ply", "long.xyz, line 5103: 'foo'"); // after 5,000 rows and 102 lines that hold none
 }
 
+TEST_F (ErkpaReconstruct, RefusesTextWithAHeaderThatAsksForTerabytesByItsFirstRow)
+{
+  std::string text = "FIELDS x y z u v w\nSIZE 4 4 4 4 4 4\nTYPE F F F F F F\nCOUNT 1 1 1 1000000 1000000 1000000\n"
+                     "WIDTH 200000\nHEIGHT 1\nPOINTS 200000\nDATA ascii\n";
+  for (int row = 0; row < 200000; ++row)
+    text += "0 0 0 1\n";
+  write ("wide.pcd", text);
+  expectRefuses ("wide.pcd out.ply", "wide.pcd, line 9: ");
+}
+
 TEST_F (ErkpaReconstruct, NamesTheFileWithoutPointsOrBytes)
 {
   const std::vector<std::pair<std::string, std::string>> broken = {
