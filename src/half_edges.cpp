@@ -2,7 +2,8 @@
 #include "half_edges.h"
 
 #include "parallel_collect.h"
-#include "side_table.h"
+#include "side_chains.h"
+#include "threads.h"
 
 #include <algorithm>
 #include <utility>
@@ -12,26 +13,10 @@ namespace erkpa
 
 using Triangle = std::array<int, 3>;
 
-namespace
-{
-
-/** \brief Each thread gets memory of its own for the array, if that is new. */
-void
-fillInParallel (int value, int threads, LargeVector<int> &array)
-{
-  parallelRanges (array.size (), threads,
-                  [&] (std::size_t first, std::size_t last)
-                  { std::fill_n (array.begin () + static_cast<std::ptrdiff_t> (first), last - first, value); });
-}
-
-} // namespace
-
 HalfEdges::HalfEdges (LargeVector<Triangle> &&triangles, std::size_t vertex_count, int threads)
     : triangles_ (std::move (triangles)), corners_ (triangles_.empty () ? nullptr : triangles_.front ().data ()),
       twins_ (3 * triangles_.size ()), outgoing_ (vertex_count), places_ (vertex_count, Place::INSIDE)
 {
-  fillInParallel (-1, threads, twins_);
-  fillInParallel (-1, threads, outgoing_);
   findTwins (threads);
   findOutgoing (threads);
 }
@@ -39,26 +24,36 @@ HalfEdges::HalfEdges (LargeVector<Triangle> &&triangles, std::size_t vertex_coun
 void
 HalfEdges::findTwins (int threads)
 {
-  const SideTable table (triangles_, outgoing_.size (), threads);
-  const auto pair_sides = [&] (int v)
-  {
-    const int *const last = table.end (static_cast<std::size_t> (v));
-    for (const int *side = table.begin (static_cast<std::size_t> (v)); side != last; ++side)
-    {
-      if (start (*side) != v)
-        continue;
-      const auto is_twin = [&, other = end (*side)] (int h) { return start (h) == other && twin (h) < 0; };
-      const int *const found = std::find_if (table.begin (static_cast<std::size_t> (v)), last, is_twin);
-      if (found != last)
-        pair (*side, *found, false);
-    }
-  };
+  // The chains lie in the arrays whose own contents follow.
+  const SideChains chains (triangles_, threads, outgoing_, twins_);
   parallelRanges (outgoing_.size (), threads,
                   [&] (std::size_t first, std::size_t end)
                   {
+                    std::vector<int> sides;
                     for (std::size_t v = first; v < end; ++v)
-                      pair_sides (static_cast<int> (v));
+                    {
+                      chains.list (v, sides);
+                      outgoing_[v] = -1;
+                      pairSides (static_cast<int> (v), sides);
+                    }
                   });
+}
+
+/** \brief Pair the sides of one vertex that run both ways. */
+void
+HalfEdges::pairSides (int v, const std::vector<int> &sides)
+{
+  for (const int side : sides)
+    twins_[static_cast<std::size_t> (side)] = -1;
+  for (const int side : sides)
+  {
+    if (start (side) != v)
+      continue;
+    const auto is_twin = [&, other = end (side)] (int h) { return start (h) == other && twin (h) < 0; };
+    const auto found = std::find_if (sides.begin (), sides.end (), is_twin);
+    if (found != sides.end ())
+      pair (side, *found, false);
+  }
 }
 
 void

@@ -5,6 +5,7 @@
 
 #include <array>
 #include <cstddef>
+#include <vector>
 
 namespace erkpa
 {
@@ -162,6 +163,9 @@ private:
 
   void
   findTwins (int threads);
+
+  void
+  pairSides (int v, const std::vector<int> &sides);
 
   void
   findOutgoing (int threads);

@@ -3,7 +3,7 @@
 
 #include "concurrent_sets.h"
 #include "mesh_graph.h"
-#include "side_table.h"
+#include "side_chains.h"
 
 #include <Eigen/Geometry>
 
@@ -22,7 +22,7 @@ namespace
 class EdgeCounter
 {
 public:
-  EdgeCounter (const LargeVector<std::array<int, 3>> &triangles, const SideTable &sides, ConcurrentSets &pieces)
+  EdgeCounter (const LargeVector<std::array<int, 3>> &triangles, const SideChains &sides, ConcurrentSets &pieces)
       : triangles_ (triangles), sides_ (sides), pieces_ (pieces)
   {
   }
@@ -30,9 +30,9 @@ public:
   void
   count (std::size_t v)
   {
-    others_.clear ();
-    for (const int *side = sides_.begin (v); side != sides_.end (v); ++side)
-      others_.push_back (otherEnd (static_cast<std::size_t> (*side), static_cast<int> (v)));
+    sides_.list (v, others_);
+    for (int &side : others_)
+      side = otherEnd (static_cast<std::size_t> (side), static_cast<int> (v));
     std::sort (others_.begin (), others_.end ());
     for (std::size_t i = 0, end = 0; i < others_.size (); i = end)
     {
@@ -57,7 +57,7 @@ private:
   }
 
   const LargeVector<std::array<int, 3>> &triangles_;
-  const SideTable &sides_;
+  const SideChains &sides_;
   ConcurrentSets &pieces_;
   std::vector<int> others_; // other ends of the edges of the vertex at hand
 };
@@ -68,7 +68,8 @@ MeshTopology
 measureTopology (const TriangleMesh &mesh, int threads)
 {
   const std::size_t vertices = mesh.vertices.size ();
-  const SideTable sides (mesh.triangles, vertices, threads);
+  LargeVector<int> heads (vertices), nexts (3 * mesh.triangles.size ());
+  const SideChains sides (mesh.triangles, threads, heads, nexts);
   ConcurrentSets pieces (vertices, threads);
   MeshTopology topology;
   std::size_t edges = 0;

@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "side_table.h"
+#include "side_chains.h"
 
 #include "threads.h"
 
 #include <algorithm>
+#include <utility>
 
 namespace erkpa
 {
@@ -26,32 +27,29 @@ visitSides (const LargeVector<Triangle> &triangles, int first_vertex, int end_ve
                                   std::min (triangle[2], triangle[0])};
     for (std::size_t i = 3; i-- > 0;)
       if (static_cast<unsigned> (lows[i] - first_vertex) < count)
-        visit (static_cast<std::size_t> (lows[i]), static_cast<int> (3 * t + i));
+        visit (static_cast<std::size_t> (lows[i]), 3 * t + i);
   }
 }
 
 } // namespace
 
-SideTable::SideTable (const LargeVector<Triangle> &triangles, std::size_t vertex_count, int threads)
-    : firsts_ (vertex_count + 1, 0), sides_ (3 * triangles.size ())
+SideChains::SideChains (const LargeVector<Triangle> &triangles, int threads, LargeVector<int> &heads,
+                        LargeVector<int> &nexts)
+    : heads_ (heads), nexts_ (nexts)
 {
   // Each thread looks at all triangles for the sides of its own vertices.
   const std::size_t parts = std::min<std::size_t> (static_cast<std::size_t> (threadCount (threads)), 64);
-  const auto in_parts = [&] (auto visit)
-  {
-    parallelFor (
-        parts, threads, [] { return 0; },
-        [&] (int, std::size_t part)
-        {
-          visitSides (triangles, static_cast<int> (part * vertex_count / parts),
-                      static_cast<int> ((part + 1) * vertex_count / parts), visit);
-        });
-  };
-  in_parts ([this] (std::size_t low, int) { ++firsts_[low]; });
-  int sum = 0;
-  for (int &first : firsts_)
-    first = sum += first;
-  in_parts ([this] (std::size_t low, int side) { sides_[static_cast<std::size_t> (--firsts_[low])] = side; });
+  const auto first_of = [&] (std::size_t part) { return part * heads.size () / parts; };
+  parallelFor (
+      parts, threads, [] { return 0; },
+      [&] (int, std::size_t part)
+      {
+        const std::size_t first = first_of (part), end = first_of (part + 1);
+        std::fill_n (heads.begin () + static_cast<std::ptrdiff_t> (first), end - first, -1);
+        visitSides (triangles, static_cast<int> (first), static_cast<int> (end),
+                    [&] (std::size_t low, std::size_t side)
+                    { nexts[side] = std::exchange (heads[low], static_cast<int> (side)); });
+      });
 }
 
 } // namespace erkpa
