@@ -202,8 +202,7 @@ BlockEnrichment::view () const
     }
     seen.distance_at = values.distance_at.empty () ? nullptr : values.distance_at.data ();
     seen.fade = static_cast<float> (parts_[static_cast<std::size_t> (values.surface)].fade * inverse_unit_);
-    seen.reversible = is_plane_[static_cast<std::size_t> (values.surface)] != 0;
-    seen.squared = true;
+    seen.is_plane = is_plane_[static_cast<std::size_t> (values.surface)] != 0;
   }
   return sharp;
 }

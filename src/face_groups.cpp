@@ -11,6 +11,8 @@ bool
 FaceGroups::gather (const Eigen::Vector3d &center, double extent)
 {
   near_.clear ();
+  face_of_slot_.clear ();
+  listPresent (); // none before assign ()
   if (faces_ == nullptr)
     return false;
   faces_->meetingsNear (center, extent, near_);

@@ -34,7 +34,8 @@ sharpenNormals (const NeighborSearch &search, const NormalScale &scale, int thre
  *
  * Near an edge a smeared normal leans towards the normal of the other face; an exact one does not, and one with a
  * random error leans that way as often as away from it. Hence the median of that lean tells, as a share of the edge's
- * angle. No edges, no smear. Some pieces of the cloud tell it.
+ * angle. No edges, no smear. Some pieces of the cloud tell it, few of them where
+ * they clearly say no.
  */
 bool
 areNormalsSmeared (const NeighborSearch &search, const NormalScale &scale, int threads, const OrientedPoints &points);

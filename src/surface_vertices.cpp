@@ -41,7 +41,7 @@ struct EdgeRoot
   }
 
   /** \brief Take up f - iso and its slope along the edge at t.
-   * \return how far the root is moved; 0 where it is found
+   * \return how far a step of Newton's moves the root; 0 where it is found, all of the edge where it is halved instead
    */
   double
   refine (double value, double slope)
@@ -50,9 +50,10 @@ struct EdgeRoot
       return 0.0;
     ((value < 0.0) == low_inside ? t_low : t_high) = t;
     const double newton = t - value / slope;
-    const double next = newton > t_low && newton < t_high ? newton : 0.5 * (t_low + t_high);
+    const bool is_newton = newton > t_low && newton < t_high;
+    const double next = is_newton ? newton : 0.5 * (t_low + t_high);
     const double before = std::exchange (t, std::clamp (next, MARGIN, 1.0 - MARGIN));
-    return std::abs (t - before);
+    return is_newton ? std::abs (t - before) : 1.0;
   }
 };
 

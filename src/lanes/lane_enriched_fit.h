@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include "lane_enriched_system.h"
 #include "lane_kinks.h"
-#include "lane_pivot.h"
 #include "lane_raises.h"
 #include "lane_reach.h"
 #include "lane_support.h"
@@ -33,27 +33,33 @@ public:
   LaneEnrichedFit (const Settings &settings, const LaneSurfaces<B> &near, std::size_t first,
                    const LaneSupport<B> &support)
       : support_ (support), weights_ (settings, support), scale_ (support.inverse ()),
-        reach_ (settings, support.radius (), support.squaredRadius ()), kinks_ (near, first, scale_)
+        reach_ (settings, support.radius (), support.squaredRadius ()), kinks_ (near, first, scale_),
+        system_ (SIZE + kinks_.terms ())
   {
     sumMoments ();
-    weight_ = M_[0];
+    weight_ = system_.M[0];
     spread_ = B (0.0f);
     for (int a = 0; a < 3; ++a)
     {
-      centroid_[a] = M_[at (1 + a, 0)] / weight_;
-      spread_ += fnma (centroid_[a], M_[at (1 + a, 0)], M_[at (1 + a, 1 + a)]);
+      centroid_[a] = system_.M[at (1 + a, 0)] / weight_;
+      spread_ += fnma (centroid_[a], system_.M[at (1 + a, 0)], system_.M[at (1 + a, 1 + a)]);
     }
     if constexpr (IS_HERMITE)
-      TermsT::addGradientMoments (M_);
+      TermsT::addGradientMoments (system_.M);
     kinks_.activate (weight_);
-    for (int j = 0; j < size (); ++j)
-      at_x_[j] = j < SIZE ? B (j == 0 ? 1.0f : 0.0f) : kinks_.atPoint (j - SIZE);
+    for (int j = 0; j < SIZE; ++j)
+      at_x_[j] = B (j == 0 ? 1.0f : 0.0f);
     for (int j = SIZE; j < size (); ++j)
-      keep (j, kinks_.counts (j - SIZE));
-    factorize ();
+    {
+      const auto counts = kinks_.counts (j - SIZE) > B (0.5f);
+      system_.keepWhere (counts, j);
+      at_x_[j] = xsimd::select (counts, kinks_.atPoint (j - SIZE), B (0.0f));
+    }
+    system_.factorize ([this] (int j, B moment) { return floorOf (j, moment); }, SIZE + kinks_.firstFading (),
+                       [this] (int j) { return kinks_.fadeOf (j - SIZE); });
     for (int j = 0; j < size (); ++j)
-      c_[j] = b_[j];
-    solve (c_);
+      c_[j] = system_.b[j];
+    system_.solve (c_);
   }
 
   Mask
@@ -97,7 +103,7 @@ public:
       growth_[a] = B (2.0f) * radius_gradient[a];
     for (int j = 0; j < size (); ++j)
       a_[j] = at_x_[j];
-    solve (a_);
+    system_.solve (a_);
     WeightChange<B> all, below[KinksT::MAX_COUNT], above[KinksT::MAX_COUNT];
     B by_u[3] = {B (0.0f), B (0.0f), B (0.0f)}, by_radius (0.0f);
     B direct[3] = {by_radius, by_radius, by_radius}; // of eq. (2)
@@ -125,7 +131,7 @@ public:
     }
     if constexpr (!IS_HERMITE)
       LaneRaises<B, TermsT, LaneWeights<B, KernelT>> (weights_, centroid_, spread_)
-          .subtractFrom (gradient, *this, a_, c_, radius_gradient);
+          .subtractFrom (gradient, system_, a_, c_, radius_gradient);
   }
 
   /** \brief Where a pivot that is raised moves the gradient by more than is computed here: of functional values, those
@@ -135,29 +141,12 @@ public:
   {
     constexpr float NEGLIGIBLE = 1e-5f;
     Mask unsettled = B (0.0f) > B (1.0f);
-    for (int j = IS_HERMITE ? size () : SIZE > 4 ? 1 : SIZE; j < SIZE; ++j)
-      unsettled = unsettled || pivots_[j].raise > B (0.0f);
+    if constexpr (!IS_HERMITE && SIZE > 4)
+      for (int j = 1; j < SIZE; ++j)
+        unsettled = unsettled || system_.pivot (j).raise > B (0.0f);
     for (int j = IS_HERMITE ? 1 : SIZE; j < size (); ++j)
-      unsettled = unsettled || xsimd::abs (a_[j] * c_[j] * pivots_[j].raise) > B (NEGLIGIBLE);
+      unsettled = unsettled || xsimd::abs (a_[j] * c_[j] * system_.pivot (j).raise) > B (NEGLIGIBLE);
     return unsettled;
-  }
-
-  /** \brief See LaneSystem. */
-  const LanePivot<B> &
-  pivot (int j) const
-  {
-    return pivots_[j];
-  }
-
-  /** \brief See LaneSystem; of a polynomial. */
-  void
-  residualOfTerm (int term, B *v) const
-  {
-    for (int i = 0; i < SIZE; ++i)
-      v[i] = B (i == term ? 1.0f : 0.0f);
-    for (int j = term - 1; j >= 0; --j)
-      for (int i = j + 1; i <= term; ++i)
-        v[j] = fnma (M_[at (i, j)], v[i], v[j]);
   }
 
   B
@@ -181,7 +170,7 @@ private:
   int
   size () const
   {
-    return SIZE + kinks_.terms ();
+    return system_.size ();
   }
 
   /** \brief Place of a surface's θ² among the terms. */
@@ -194,12 +183,6 @@ private:
   void
   sumMoments ()
   {
-    for (int j = 0; j < size (); ++j)
-    {
-      b_[j] = B (0.0f);
-      for (int i = 0; i <= j; ++i)
-        M_[at (j, i)] = B (0.0f);
-    }
     weights_.visitNodes (
         [this] (std::size_t i, B squared, B t, const B *u)
         {
@@ -219,7 +202,7 @@ private:
     weights_.normal (i, n);
     TermsT::evaluate (u, dot (u, u), R);
     if constexpr (IS_HERMITE)
-      TermsT::addNormal (weight, u, n, b_);
+      TermsT::addNormal (weight, u, n, system_.b);
     const unsigned there = kinks_.evaluate (node, R + SIZE, G);
     const bool has_height = !IS_HERMITE || weights_.hasLambda ();
     const B height = heightOf (i, u, n);
@@ -229,9 +212,9 @@ private:
         continue;
       const B wr = weight * R[j];
       for (int k = 0; k <= j; ++k)
-        M_[at (j, k)] = xsimd::fma (wr, R[k], M_[at (j, k)]);
+        system_.M[at (j, k)] = xsimd::fma (wr, R[k], system_.M[at (j, k)]);
       if (has_height)
-        b_[j] = xsimd::fma (wr, height, b_[j]);
+        system_.b[j] = xsimd::fma (wr, height, system_.b[j]);
       if (IS_HERMITE && j >= SIZE)
         addSlopesOf (j - SIZE, weight, u, n, G);
     }
@@ -255,50 +238,12 @@ private:
     for (int a = 0; a < 3; ++a)
       weighted[a] = weight * G[e][a];
     for (int a = 0; a < 3; ++a)
-      M_[at (j, 1 + a)] += weighted[a];
+      system_.M[at (j, 1 + a)] += weighted[a];
     if constexpr (SIZE > 4)
-      M_[at (j, 4)] = xsimd::fma (B (2.0f), dot (weighted, u), M_[at (j, 4)]);
+      system_.M[at (j, 4)] = xsimd::fma (B (2.0f), dot (weighted, u), system_.M[at (j, 4)]);
     for (int other = 0; other <= e; ++other)
-      M_[at (j, SIZE + other)] += dot (weighted, G[other]);
-    b_[j] += dot (weighted, n);
-  }
-
-  /** \brief Strike a term out in lanes where it does not count. */
-  void
-  keep (int j, B counts)
-  {
-    // A lane with nothing in reach holds NaNs, which a product would keep.
-    const auto is_kept = counts > B (0.5f);
-    for (int i = 0; i <= j; ++i)
-      M_[at (j, i)] = xsimd::select (is_kept, M_[at (j, i)], B (0.0f));
-    for (int i = j + 1; i < size (); ++i)
-      M_[at (i, j)] = xsimd::select (is_kept, M_[at (i, j)], B (0.0f));
-    b_[j] = xsimd::select (is_kept, b_[j], B (0.0f));
-    at_x_[j] = xsimd::select (is_kept, at_x_[j], B (0.0f));
-  }
-
-  /** \brief See MomentSystem::factorize (). */
-  void
-  factorize ()
-  {
-    B moments[MAX_SIZE];
-    for (int j = 0; j < size (); ++j)
-      moments[j] = M_[at (j, j)];
-    for (int j = 0; j < size (); ++j)
-    {
-      M_[at (j, j)] = pivots_[j].raiseFrom (M_[at (j, j)], floorOf (j, moments[j]));
-      if (j >= SIZE + kinks_.firstFading ())
-        M_[at (j, j)] += kinks_.fadeOf (j - SIZE);
-      const B inverse = B (1.0f) / M_[at (j, j)];
-      for (int k = j + 1; k < size (); ++k)
-      {
-        const B factor = M_[at (k, j)] * inverse;
-        for (int i = k; i < size (); ++i)
-          M_[at (i, k)] = fnma (M_[at (i, j)], factor, M_[at (i, k)]);
-      }
-      for (int i = j + 1; i < size (); ++i)
-        M_[at (i, j)] *= inverse;
-    }
+      system_.M[at (j, SIZE + other)] += dot (weighted, G[other]);
+    system_.b[j] += dot (weighted, n);
   }
 
   B
@@ -307,19 +252,6 @@ private:
     if (j >= SIZE && j < squareOf (0))
       return floorOfKink (CONSTRAINT, weight_, moment);
     return floorOfPolynomial (CONSTRAINT, j < SIZE ? TermsT::degree (j) : 2, weight_, spread_);
-  }
-
-  void
-  solve (B *v) const
-  {
-    for (int j = 0; j < size (); ++j)
-      for (int i = j + 1; i < size (); ++i)
-        v[i] = fnma (M_[at (i, j)], v[j], v[i]);
-    for (int j = 0; j < size (); ++j)
-      v[j] /= M_[at (j, j)];
-    for (int j = size () - 2; j >= 0; --j)
-      for (int i = j + 1; i < size (); ++i)
-        v[j] = fnma (M_[at (i, j)], v[i], v[j]);
   }
 
   /** \brief The residual of the fit at a node, by which the change of its weight moves f; and that change by itself. */
@@ -383,8 +315,7 @@ private:
   LaneReach<B> reach_;
   KinksT kinks_;
   B at_x_[MAX_SIZE]; // R(x)
-  B M_[MAX_SIZE * (MAX_SIZE + 1) / 2], b_[MAX_SIZE];
-  LanePivot<B> pivots_[MAX_SIZE];
+  LaneEnrichedSystem<B, SIZE, MAX_SIZE> system_;
   B c_[MAX_SIZE], a_[MAX_SIZE]; // M^-1 b, M^-1 R(x)
   B weight_, spread_, centroid_[3], growth_[3];
 };

@@ -26,7 +26,7 @@ public:
   static constexpr bool HAS_SQUARES = FORM == LaneEnrichment::KINKS_AND_SQUARES,
                         ARE_JUMPS = FORM == LaneEnrichment::JUMPS;
   static constexpr int MAX_COUNT = COUNT == ANY_COUNT ? static_cast<int> (MAX_SURFACES) : COUNT;
-  static constexpr int MAX_CORNERS = COUNT == ANY_COUNT ? LaneSurfaces<B>::MAX_CORNERS : 0;
+  static constexpr int MAX_CORNERS = COUNT == ANY_COUNT ? LaneSurfaces<B>::MAX_CORNERS / (ARE_JUMPS ? 1 : 2) : 0;
   static constexpr int MAX_TERMS = (HAS_SQUARES ? 2 : 1) * MAX_COUNT + MAX_CORNERS;
 
   /** \param[in] first place of the evaluation point in the first lane
@@ -150,8 +150,7 @@ public:
       return xsimd::select (presence (term) > B (MIN_PRESENCE), all, B (0.0f));
     }
     const int s = term - squareOf (0);
-    const B zero (0.0f);
-    return near_.surfaces[s]->squared ? xsimd::select (presence (term) > B (MIN_PRESENCE), active_[s], zero) : zero;
+    return xsimd::select (presence (term) > B (MIN_PRESENCE), active_[s], B (0.0f));
   }
 
   /** \brief The first term that may fade; those after it may, too. */
@@ -196,10 +195,7 @@ public:
     const B change = is_square ? ofSquare (term - squareOf (0), axis, of_all, of_below, of_above, radius_gradient)
                                : weight_ * extentChange (term, axis, radius_gradient);
     return fade / weight_ * of_all - B (2.0f * FADE) * left / (p * p * p) * change +
-           B (is_square   ? 4.0f
-              : ARE_JUMPS ? 0.0f
-                          : 2.0f) *
-               fade * radius_gradient;
+           B (2.0f * degree (term)) * fade * radius_gradient;
   }
 
 private:
@@ -254,7 +250,7 @@ private:
     const Surface &surface = *near_.surfaces[s];
     const B theta = B::load_unaligned (surface.theta_at + first_), one (1.0f), zero (0.0f);
     const auto holds_x = theta >= zero;
-    const bool is_reversible = ARE_JUMPS || surface.reversible;
+    const bool is_reversible = ARE_JUMPS || surface.is_plane;
     sign_[s] = is_reversible ? xsimd::select (holds_x, -one, one) : one;
     open_[s] = is_reversible ? xsimd::select (holds_x, one, zero) : zero;
     const B height = sign_[s] * theta * scale_, on = isOn (height, s);
@@ -279,7 +275,7 @@ private:
                                      height_b = B (corner.scale_b) * B::load_unaligned (b.theta_at + first_);
     // One that fades is always seen from the same side: see Enrichment::addTerm ().
     const auto holds_x = height_a >= zero && height_b >= zero && presence (surfaces () + k) >= one;
-    const B sign = ARE_JUMPS || (a.reversible && b.reversible) ? xsimd::select (holds_x, -one, one) : one;
+    const B sign = ARE_JUMPS || (a.is_plane && b.is_plane) ? xsimd::select (holds_x, -one, one) : one;
     is_behind_[k] = sign < zero;
     const auto is_b = sign * height_b < sign * height_a;
     const B scale = sign * xsimd::select (is_b, B (corner.scale_b), B (corner.scale_a));
@@ -324,6 +320,13 @@ private:
   balance (int s) const
   {
     return xsimd::min (below_[s], above_[s]) / weight_;
+  }
+
+  /** \brief The power of the length scale that a term goes with. */
+  float
+  degree (int term) const
+  {
+    return term >= squareOf (0) ? 2.0f : ARE_JUMPS ? 0.0f : 1.0f;
   }
 
   /** \brief How much of a term is in force. */

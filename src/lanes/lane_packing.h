@@ -150,7 +150,7 @@ private:
 
   __mmask16 kept_;
 };
-#elif defined(__AVX2__)
+#elif defined(__AVX2__) && defined(__FMA__)
 /** \brief For each set of eight lanes these lanes one after the other, a byte each. */
 struct PackedLanes
 {

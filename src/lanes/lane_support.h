@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include "lane_list.h"
 #include "lane_nearest.h"
-#include "lane_packing.h"
-#include "lanes.h"
 
 #include <algorithm>
 #include <cmath>
@@ -19,18 +18,16 @@ public:
   static constexpr std::size_t WIDTH = B::size;
   static constexpr std::size_t NORMAL = 3, LAMBDA = 6, CONFIDENCE = 7; // columns
 
-  /** \brief Take up the points of some lanes.
-   * \param[in] first place of the evaluation point in the first lane
+  /** \brief Take up the points of some lanes. Where ε is the distance to the k-th node, one support takes up vector
+   * after vector, and knows from those before what to expect. \param[in] first place of the evaluation point in the
+   * first lane
    */
   void
   moveTo (const Settings &settings, const Nodes &nodes, const Points &points, std::size_t first, const Scratch &scratch)
   {
     nodes_ = &nodes;
-    list_ = scratch.list;
+    list_.setUp (nodes, scratch);
     rows_ = scratch.rows;
-    const std::size_t stride = nodes.count + MAX_WIDTH;
-    for (std::size_t column = 0; column < Scratch::COLUMNS; ++column)
-      near_[column] = scratch.near + column * stride;
     k_ = static_cast<float> (settings.k);
     is_limited_ = settings.limited;
     const float *const positions[] = {points.x, points.y, points.z};
@@ -40,11 +37,12 @@ public:
     kth_ = radius_ * radius_;
     at_limit_ = short_ = B (0.0f);
     if (settings.k > 0)
-      findNearest (B::load_unaligned (points.guess + first), first == 0);
+      findNearest (B::load_unaligned (points.guess + first));
     inverse_ = B (1.0f) / radius_;
   }
 
-  /** \brief List the nodes that may lie in the support of a lane, the same for all of some supports. */
+  /** \brief List the nodes that may lie in the support of a lane, the same for all of some supports; for one at a time
+   * where ε is the distance to the k-th node. */
   static void
   listNodes (LaneSupport *supports, std::size_t count)
   {
@@ -53,10 +51,7 @@ public:
     else
       supports[0].template listWithin<Scratch::COLUMNS> (supports, count, supports[0].nodes_->count);
     for (std::size_t s = 1; s < count; ++s)
-    {
-      supports[s].listed_ = supports[0].listed_;
-      supports[s].on_surface_ = supports[0].on_surface_;
-    }
+      supports[s].list_ = supports[0].list_;
   }
 
   /** \brief ε. */
@@ -91,21 +86,20 @@ public:
   std::size_t
   size () const
   {
-    return listed_;
+    return list_.size ();
   }
 
   std::size_t
   node (std::size_t i) const
   {
-    return list_[i];
+    return list_.node (i);
   }
 
   /** \brief An array of what the nodes to visit have: see Scratch; null where none has it. */
   const float *
   near (std::size_t column) const
   {
-    const bool is_there = column < LAMBDA || (column == LAMBDA ? nodes_->lambda : nodes_->confidence) != nullptr;
-    return is_there ? near_[column] : nullptr;
+    return list_.near (column);
   }
 
   /** \brief x_i - x of the i-th node to visit, and its square. */
@@ -113,7 +107,7 @@ public:
   offset (std::size_t i, B *d) const
   {
     for (std::size_t a = 0; a < 3; ++a)
-      d[a] = B (near_[a][i]) - x_[a];
+      d[a] = B (list_.near (a)[i]) - x_[a];
     return squaredLength (d);
   }
 
@@ -139,7 +133,7 @@ public:
   std::size_t
   onSurface () const
   {
-    return on_surface_;
+    return list_.onSurface ();
   }
 
   /** \brief The first node at a squared distance; zero where there is none. */
@@ -151,7 +145,7 @@ public:
     {
       B found;
       distances<1> (i, &found);
-      node = xsimd::select (found == squared, B (static_cast<float> (list_[i])), node);
+      node = xsimd::select (found == squared, B (static_cast<float> (list_.node (i))), node);
     }
     return node;
   }
@@ -183,55 +177,14 @@ private:
     return xsimd::fma (d[2], d[2], xsimd::fma (d[1], d[1], xsimd::fma (d[0], d[0], B (LEAST))));
   }
 
-  /** \brief What all nodes have: see Scratch. */
-  const float *
-  all (std::size_t column) const
-  {
-    const float *const columns[Scratch::COLUMNS] = {nodes_->x,  nodes_->y,  nodes_->z,      nodes_->nx,
-                                                    nodes_->ny, nodes_->nz, nodes_->lambda, nodes_->confidence};
-    return columns[column];
-  }
-
-  /** \brief Lists those of the first \a value_points that may lie within the bounds of some lane of some supports, with
-   * the first COLUMNS of what they have.
-   *
-   * Those within a ball around all of them: for once the lanes are nodes, for there are many more of these.
-   */
+  /** \brief Lists those of the first \a value_points that may lie within the bounds of some lane of some supports. */
   template <std::size_t COLUMNS>
   void
   listWithin (const LaneSupport *supports, std::size_t count, std::size_t value_points)
   {
-    const float *from[COLUMNS];
-    for (std::size_t column = 0; column < COLUMNS; ++column)
-      from[column] = all (column);
     float middle[3], reach = 0.0f;
     findBall (supports, count, middle, reach);
-    const B limit (reach * reach);
-    std::size_t listed = 0, first = 0;
-    const auto list = [&] (std::size_t left)
-    {
-      B x[3], d[3];
-      for (std::size_t a = 0; a < 3; ++a)
-      {
-        x[a] = B::load_unaligned (from[a] + first);
-        d[a] = x[a] - B (middle[a]);
-      }
-      const Packing<B> packing (limit - squaredLength (d), left);
-      for (std::size_t a = 0; a < 3; ++a)
-        packing.pack (x[a], near_[a] + listed);
-      for (std::size_t column = 3; column < COLUMNS; ++column)
-        if (from[column] != nullptr)
-          packing.pack (Packing<B>::load (from[column] + first, left), near_[column] + listed);
-      packing.packNumbers (first, list_ + listed);
-      listed += packing.size ();
-    };
-    for (; first + WIDTH <= value_points; first += WIDTH)
-      list (WIDTH);
-    if (first < value_points)
-      list (value_points - first);
-    listed_ = listed;
-    for (on_surface_ = listed_; on_surface_ > 0 && list_[on_surface_ - 1] >= nodes_->on_surface;)
-      --on_surface_;
+    list_.template take<COLUMNS> (middle, reach, value_points);
   }
 
   /** \brief The squared distances of the listed nodes, a row for each. */
@@ -240,9 +193,9 @@ private:
   {
     // The compiler cannot know that the rows do not lie where these are.
     float *const rows = rows_;
-    const float *const near[] = {near_[0], near_[1], near_[2]};
+    const float *const near[] = {list_.near (0), list_.near (1), list_.near (2)};
     const B x[] = {x_[0], x_[1], x_[2]};
-    for (std::size_t i = 0, count = listed_; i < count; ++i)
+    for (std::size_t i = 0, count = size (); i < count; ++i)
     {
       const B d[] = {B (near[0][i]) - x[0], B (near[1][i]) - x[1], B (near[2][i]) - x[2]};
       squaredLength (d).store_unaligned (rows + WIDTH * i);
@@ -278,11 +231,12 @@ private:
    * The bound holds anywhere; mostly, what the points before were found to need and a little more does as well.
    */
   void
-  findNearest (B guess, bool is_first)
+  findNearest (B guess)
   {
     constexpr float MORE = 1.1f, MORE_THAN_GUESS = 1.25f, ROUNDING = 1e-5f;
     lists_all_ = nodes_->on_surface == nodes_->count;
     const B limit = radius_, k (k_);
+    const bool is_first = !(largest_ > 0.0f);
     if (is_first)
       expected_ = guess * guess;
     radius_ = xsimd::min (limit, is_first ? guess * B (MORE_THAN_GUESS) : B (MORE * largest_));
@@ -290,7 +244,7 @@ private:
     {
       lists_all_ ? listWithin<Scratch::COLUMNS> (this, 1, nodes_->count) : listWithin<3> (this, 1, nodes_->on_surface);
       measureDistances ();
-      LaneNearest<B> nearest (rows_, listed_, k_);
+      LaneNearest<B> nearest (rows_, size (), k_);
       const B bound = radius_ * radius_ * B (1.0f + ROUNDING), in_bound = nearest.countWithin (bound);
       if (xsimd::any (in_bound < k && radius_ < limit))
       {
@@ -331,27 +285,12 @@ private:
   void
   keepSupporting ()
   {
-    std::size_t kept = 0;
-    for (std::size_t first = 0; first < listed_; first += WIDTH)
-    {
-      unsigned lanes = 0;
-      for (std::size_t i = first; i < std::min (listed_, first + WIDTH); ++i)
-        lanes |= (xsimd::any (B::load_unaligned (rows_ + WIDTH * i) <= kth_) ? 1u : 0u) << (i - first);
-      const Packing<B> packing (lanes);
-      for (std::size_t column = 0; column < Scratch::COLUMNS; ++column)
-        if (near (column) != nullptr)
-          packing.pack (B::load_unaligned (near_[column] + first), near_[column] + kept);
-      packing.pack (list_ + first, list_ + kept);
-      kept += packing.size ();
-    }
-    on_surface_ = listed_ = kept;
+    list_.keep ([this] (std::size_t i) { return xsimd::any (B::load_unaligned (rows_ + WIDTH * i) <= kth_); });
   }
 
   const Nodes *nodes_;
-  std::uint32_t *list_;
-  float *near_[Scratch::COLUMNS];
+  LaneList<B> list_;
   float *rows_;
-  std::size_t listed_ = 0, on_surface_ = 0;
   float k_;
   bool is_limited_;
   B x_[3];
@@ -359,8 +298,8 @@ private:
   B at_limit_;             // 1 where ε is Points::radius
   B short_;                // 1 where it is beyond
   bool lists_all_ = false; // the list was made for the k-th node, and holds those in the support
-  B expected_;             // ε² of the points before, in the mean
-  float largest_;          // ε of them at most
+  B expected_ = B (0.0f);  // ε² of the points before, in the mean
+  float largest_ = 0.0f;   // ε of them at most
 };
 
 } // namespace erkpa::lanes

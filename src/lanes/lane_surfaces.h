@@ -20,6 +20,7 @@ enum class LaneEnrichment
 template <typename B>
 struct LaneSurfaces
 {
+  /** \brief Of jumps; half as many of kinks. */
   static constexpr int MAX_CORNERS = 2 * static_cast<int> (SharpSurfaces::MAX_PENCILS);
 
   /** \brief A term of three surfaces that meet: min (scale_a a, scale_b b), where that is positive; jumps have two. */
@@ -96,7 +97,7 @@ struct LaneSurfaces
   }
 
 private:
-  /** \brief θ of a reversible surface, a plane, is a distance. One that is limited is gone at a distance. */
+  /** \brief θ of a plane is a distance. One that is limited is gone at a distance. */
   static bool
   passesSupport (const Surface &surface, std::size_t first, B radius)
   {
@@ -107,7 +108,7 @@ private:
         return false;
     }
     const B theta = B::load_unaligned (surface.theta_at + first);
-    return !surface.reversible || xsimd::any (xsimd::abs (theta) <= B (1.00001f) * radius);
+    return !surface.is_plane || xsimd::any (xsimd::abs (theta) <= B (1.00001f) * radius);
   }
 };
 

@@ -78,7 +78,7 @@ struct Points
   std::size_t count;
   const float *x, *y, *z;
   const float *radius;    ///< ε(x); with k > 0 a bound: where it is exceeded, State::SHORT
-  const float *guess;     ///< with k > 0: about ε(x)
+  const float *guess;     ///< with k > 0: about ε(x); of the first points, the others follow these
   const float *growth[3]; ///< ∇ε(x) where Points::radius is ε(x); null: zero
   std::size_t stride;     ///< from a point's attribute or coefficient to its next one
 };
@@ -86,13 +86,12 @@ struct Points
 /** \brief At most so many sharp surfaces enrich the points of one call. */
 constexpr std::size_t MAX_SURFACES = 6;
 
-/** \brief A sharp surface that is in force everywhere, and θ and ∇θ of it. */
+/** \brief A sharp surface, and θ and ∇θ of it. */
 struct Surface
 {
   const float *theta, *gradient[3];       ///< at the value points
   const float *theta_at, *gradient_at[3]; ///< at the evaluation points
-  bool reversible;                        ///< its kink may be seen from either side
-  bool squared;                           ///< its kink comes with θ²
+  bool is_plane;                          ///< |θ| is a distance, and a kink may be seen from either side
   const float *distance_at, *away_at[3];  ///< of a limited one: from its extent, and ∇ of it; null otherwise
   float fade;                             ///< of a limited one: SharpSurfaceParts::fade
 };
