@@ -333,6 +333,38 @@ TEST_F (Paper, JumpEnrichmentMakesFunctionalConstraintsExactOnEdgesAndCorners)
   EXPECT_GT (compared, 590); // a few lie where a face is seen by hardly a node
 }
 
+/** \brief Newton's steps lead nowhere where a field that noise makes jump changes its sign in the jump. */
+TEST_F (Paper, VerticesLieWhereTheFieldChangesItsSignEvenWhereItJumps)
+{
+  const Vector3d half (1.0, 0.7, 0.5);
+  FieldOptions options = paperOptions (Constraint::FUNCTIONAL);
+  options.radius = 0.25;
+  options.enrichment = EnrichmentType::JUMP;
+  for (const Eigen::Vector4d &bisector : shapes::boxBisectors (half))
+    options.sharp_surfaces.push_back (shapes::plane (bisector));
+  shapes::Samples box = shapes::box (12000, half);
+  for (Vector3d &position : box.positions)
+    position += randomPoint (0.02);
+  const auto field = shapes::field (box, options);
+  erkpa::PolygonizerOptions grid;
+  grid.voxel_size = 0.04;
+  erkpa::TriangleMesh mesh;
+  erkpa::PolygonizerReport report;
+  ASSERT_TRUE (erkpa::polygonize (*field, grid, mesh, report).ok ());
+  std::size_t off = 0;
+  for (const Eigen::Vector3f &vertex : mesh.vertices)
+  {
+    bool changes = false;
+    for (int axis = 0; axis < 3; ++axis)
+    {
+      const Vector3d x = vertex.cast<double> (), step = 3e-3 * grid.voxel_size * Vector3d::Unit (axis);
+      changes = changes || (field->value (x - step) < 0.0) != (field->value (x + step) < 0.0);
+    }
+    off += changes ? 0 : 1;
+  }
+  EXPECT_LT (off, mesh.vertices.size () / 200) << "of those in the middle of cells some may be";
+}
+
 TEST_F (Paper, JumpEnrichmentIsRefusedForConstraintsWithoutJumps)
 {
   for (const Constraint constraint : {Constraint::HERMITE, Constraint::OFFSURFACE})
