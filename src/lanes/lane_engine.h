@@ -176,7 +176,6 @@ evaluateEnriched (const Settings &settings, const Nodes &nodes, const Points &po
   const LaneEngine<B> engine (settings, nodes, points, scratch, samples);
   const auto take_with = [&] (auto fit, const LaneSupport<B> &support, std::size_t first)
   { engine.store (support, fit, first); };
-  constexpr int ONE = CONSTRAINT == Constraint::HERMITE ? 1 : ANY_COUNT; // the default is worth a case of its own
   LaneMoments<B, BASIS, CONSTRAINT, KernelT> moments (settings);
   engine.evaluate (
       [] (const LaneSupport<B> *, std::size_t) {},
@@ -188,13 +187,17 @@ evaluateEnriched (const Settings &settings, const Nodes &nodes, const Points &po
           moments.sum (&support, 1);
           take_with (LaneFit<B, BASIS, CONSTRAINT, KernelT> (settings, support, moments.reach (0), moments.system (0)),
                      support, first);
+          return;
         }
-        else if (near.count == 1)
-          take_with (LaneEnrichedFit<B, BASIS, CONSTRAINT, KernelT, FORM, ONE> (settings, near, first, support),
-                     support, first);
-        else
-          take_with (LaneEnrichedFit<B, BASIS, CONSTRAINT, KernelT, FORM, ANY_COUNT> (settings, near, first, support),
-                     support, first);
+        if constexpr (CONSTRAINT == Constraint::HERMITE) // the default, of which one surface is worth a case of its own
+          if (near.count == 1)
+          {
+            take_with (LaneEnrichedFit<B, BASIS, CONSTRAINT, KernelT, FORM, 1> (settings, near, first, support),
+                       support, first);
+            return;
+          }
+        take_with (LaneEnrichedFit<B, BASIS, CONSTRAINT, KernelT, FORM, ANY_COUNT> (settings, near, first, support),
+                   support, first);
       });
 }
 
