@@ -384,6 +384,10 @@ TEST_F (BlockFieldTest, AgreesWithTheDefinitionWhereSharpSurfacesPassFunctionalV
   ASSERT_TRUE (erkpa::makeBoxExtent ({-0.45, -0.4, -0.2}, {0.3, 0.2, 0.3}, extent).ok ());
   erkpa::SharpSurface::ConstPtr ball;
   ASSERT_TRUE (erkpa::makeSharpSurface (erkpa::SurfaceModel::SPHERE, {0.5f, 0.0f, 0.0f, 0.2f}, ball).ok ());
+  std::vector<Vector3d> places; // some of them, for there are many ways to combine settings
+  for (const Vector3d &place : placesOnBox (half))
+    if (places.empty () || (place - places.back ()).norm () > 0.25)
+      places.push_back (place);
   for (const erkpa::EnrichmentType enrichment : {erkpa::EnrichmentType::KINK, erkpa::EnrichmentType::JUMP})
     for (const Order order : {Order::LINEAR, Order::SPHERICAL})
       for (const bool by_nearest : {true, false})
@@ -400,7 +404,7 @@ TEST_F (BlockFieldTest, AgreesWithTheDefinitionWhereSharpSurfacesPassFunctionalV
                         (enrichment == erkpa::EnrichmentType::JUMP ? " jump" : "") +
                         (order == Order::LINEAR ? " linear" : ""));
           // Pivots that are raised turn squares, of which the spherical basis has one: many places want the definition.
-          expectAgreement (*shapes::field (shapes::box (6000, half), options), placesOnBox (half),
+          expectAgreement (*shapes::field (shapes::box (6000, half), options), places,
                            order == Order::LINEAR ? 0.9 : 0.1);
         }
 }

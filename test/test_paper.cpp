@@ -347,7 +347,7 @@ TEST_F (Paper, VerticesLieWhereTheFieldChangesItsSignEvenWhereItJumps)
     position += randomPoint (0.02);
   const auto field = shapes::field (box, options);
   erkpa::PolygonizerOptions grid;
-  grid.voxel_size = 0.04;
+  grid.voxel_size = 0.08;
   erkpa::TriangleMesh mesh;
   erkpa::PolygonizerReport report;
   ASSERT_TRUE (erkpa::polygonize (*field, grid, mesh, report).ok ());

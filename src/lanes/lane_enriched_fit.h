@@ -139,7 +139,7 @@ public:
   Mask
   isUnsettled () const
   {
-    constexpr float NEGLIGIBLE = 1e-5f;
+    constexpr float NEGLIGIBLE = IS_HERMITE ? 1e-5f : 1e-6f; // floors by moments are higher, and raises change faster
     Mask unsettled = B (0.0f) > B (1.0f);
     if constexpr (!IS_HERMITE && SIZE > 4)
       for (int j = 1; j < SIZE; ++j)
