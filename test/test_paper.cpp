@@ -137,6 +137,18 @@ paperOptions (Constraint constraint, Order order = Order::LINEAR)
   return options;
 }
 
+/** \brief Those of a field that jumps across all edges of a box. */
+FieldOptions
+jumpingOptions (const Vector3d &half)
+{
+  FieldOptions options = paperOptions (Constraint::FUNCTIONAL);
+  options.radius = 0.25;
+  options.enrichment = EnrichmentType::JUMP;
+  for (const Eigen::Vector4d &bisector : shapes::boxBisectors (half))
+    options.sharp_surfaces.push_back (shapes::plane (bisector));
+  return options;
+}
+
 const Eigen::Vector4d PLANE = [] { return Eigen::Vector4d (0.6, 0.48, 0.64, 0.1); }();
 
 } // namespace
@@ -316,11 +328,7 @@ TEST_F (Paper, FlatPatchesAndPerfectEdgesDoNotMakeTheMatrixSingular)
 TEST_F (Paper, JumpEnrichmentMakesFunctionalConstraintsExactOnEdgesAndCorners)
 {
   const Vector3d half (1.0, 0.7, 0.5);
-  FieldOptions options = paperOptions (Constraint::FUNCTIONAL);
-  options.radius = 0.25;
-  options.enrichment = EnrichmentType::JUMP;
-  for (const Eigen::Vector4d &bisector : shapes::boxBisectors (half))
-    options.sharp_surfaces.push_back (shapes::plane (bisector));
+  const FieldOptions options = jumpingOptions (half);
   const shapes::Samples box = shapes::box (12000, half);
   const auto field = shapes::field (box, options);
   int compared = 0;
@@ -337,11 +345,7 @@ TEST_F (Paper, JumpEnrichmentMakesFunctionalConstraintsExactOnEdgesAndCorners)
 TEST_F (Paper, VerticesLieWhereTheFieldChangesItsSignEvenWhereItJumps)
 {
   const Vector3d half (1.0, 0.7, 0.5);
-  FieldOptions options = paperOptions (Constraint::FUNCTIONAL);
-  options.radius = 0.25;
-  options.enrichment = EnrichmentType::JUMP;
-  for (const Eigen::Vector4d &bisector : shapes::boxBisectors (half))
-    options.sharp_surfaces.push_back (shapes::plane (bisector));
+  const FieldOptions options = jumpingOptions (half);
   shapes::Samples box = shapes::box (12000, half);
   for (Vector3d &position : box.positions)
     position += randomPoint (0.02);

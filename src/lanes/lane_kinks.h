@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include "lane_balance.h"
 #include "lane_extent.h"
 #include "lane_surfaces.h"
 
@@ -36,7 +37,6 @@ public:
   {
     for (int s = 0; s < surfaces (); ++s)
     {
-      below_[s] = above_[s] = B (0.0f);
       const Surface &surface = *near_.surfaces[s];
       extents_[s] = surface.distance_at == nullptr ? B (1.0f) : LaneExtent<B> (surface, first, scale).presence ();
       seeFrom (s);
@@ -113,7 +113,7 @@ public:
   void
   weigh (std::size_t node, B weight)
   {
-    visitSides (node, [&] (int s, bool is_below) { (is_below ? below_ : above_)[s] += weight; });
+    visitSides (node, [&] (int s, bool is_below) { balances_[s].add (is_below, weight); });
   }
 
   /** \brief Once all nodes are weighed: what counts. */
@@ -124,9 +124,8 @@ public:
     weight_ = total_weight;
     for (int s = 0; s < surfaces (); ++s)
     {
-      active_[s] = xsimd::select (below_[s] > zero && above_[s] > zero && extents_[s] > B (MIN_PRESENCE), one, zero);
-      const B share = xsimd::min (balance (s) * B (1.0f / LEAST_BALANCE), one);
-      balanced_[s] = share * share * (B (3.0f) - B (2.0f) * share);
+      active_[s] = xsimd::select (balances_[s].hasBoth () && extents_[s] > B (MIN_PRESENCE), one, zero);
+      balanced_[s] = balances_[s].presence (weight_);
     }
   }
 
@@ -199,10 +198,9 @@ public:
   }
 
 private:
-  static constexpr float LEAST_BALANCE = 0.2f, FADE = 0.1f, MIN_PRESENCE = 1e-6f; // see Enrichment and FieldFit
+  static constexpr float FADE = 0.1f, MIN_PRESENCE = 1e-6f; // see Enrichment and FieldFit
 
   using Mask = decltype (B () < B ());
-
   using Corner = typename LaneSurfaces<B>::Corner;
 
   int
@@ -236,10 +234,7 @@ private:
   B
   ofSquare (int s, int axis, B of_all, const B *of_below, const B *of_above, B radius_gradient) const
   {
-    const B of_side = xsimd::select (below_[s] < above_[s], of_below[s], of_above[s]);
-    const B share = balance (s) * B (1.0f / LEAST_BALANCE);
-    const B rise = xsimd::select (share < B (1.0f), B (6.0f / LEAST_BALANCE) * share * (B (1.0f) - share), B (0.0f));
-    const B of_balance = extents_[s] * rise * fnma (balance (s), of_all, of_side);
+    const B of_balance = extents_[s] * balances_[s].change (weight_, of_all, of_below[s], of_above[s]);
     return near_.is_limited ? xsimd::fma (weight_ * balanced_[s], changeOfExtent (s, axis, radius_gradient), of_balance)
                             : of_balance;
   }
@@ -315,13 +310,6 @@ private:
     return xsimd::select (height > zero, one, xsimd::select (height < zero, zero, one - open_[s]));
   }
 
-  /** \brief The share of the nodes on the side of a surface where there are fewer. */
-  B
-  balance (int s) const
-  {
-    return xsimd::min (below_[s], above_[s]) / weight_;
-  }
-
   /** \brief The power of the length scale that a term goes with. */
   float
   degree (int term) const
@@ -351,7 +339,8 @@ private:
   std::size_t first_; // place of the evaluation point in the first lane
   B scale_;
   B sign_[MAX_COUNT], open_[MAX_COUNT]; // of θ; 1 where the kink is zero on the surface itself
-  B below_[MAX_COUNT], above_[MAX_COUNT], active_[MAX_COUNT];
+  LaneBalance<B> balances_[MAX_COUNT];
+  B active_[MAX_COUNT];
   B extents_[MAX_COUNT], balanced_[MAX_COUNT]; // what a surface's extent leaves of it, and the balance of its square
   Mask is_behind_[MAX_CORNERS + 1];            // where a corner is seen from
   B at_x_[MAX_TERMS], slope_at_x_[MAX_TERMS][3];
