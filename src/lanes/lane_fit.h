@@ -3,6 +3,7 @@
 
 #include "lane_raises.h"
 #include "lane_reach.h"
+#include "lane_square_raises.h"
 #include "lane_system.h"
 #include "lane_weights.h"
 
@@ -41,6 +42,9 @@ public:
     for (int j = 0; j < SIZE; ++j)
       c_[j] = system_.b[j];
     system_.solve (c_);
+    if constexpr (IS_REFINED)
+      if (settings.gradients)
+        refine ();
   }
 
   Mask
@@ -99,18 +103,20 @@ public:
     if constexpr (RAISES_MATTER)
       LaneRaises<B, TermsT, LaneWeights<B, KernelT>> (weights_, centroid_, spread_)
           .subtractFrom (gradient, system_, a_, c_, growth_of_points);
+    if constexpr (IS_REFINED)
+      LaneSquareRaises<B, CONSTRAINT, LaneWeights<B, KernelT>> (weights_, growth_of_points)
+          .subtractFrom (gradient, system_, a_, c_, weight_);
   }
 
-  /** \brief Where the gradient needs more than is computed here, or more digits: ten terms ask for doubles. */
+  /** \brief Where the gradient needs more than is computed here, or more digits: functional values of ten terms do. */
   Mask
   isUnsettled () const
   {
-    Mask unsettled = BASIS == Basis::QUADRATIC ? B (0.0f) < B (1.0f) : B (0.0f) > B (1.0f);
-    for (int j = RAISES_MATTER ? 4 : 1; j < SIZE; ++j)
+    Mask unsettled = SIZE == 10 && !IS_REFINED ? B (0.0f) < B (1.0f) : B (0.0f) > B (1.0f);
+    // Where pivots are raised, this reckons with the change of linear ones among themselves, and of ten terms' squares.
+    constexpr int FIRST = RAISES_MATTER && SIZE == 4 ? 4 : 1, LAST = IS_REFINED ? 4 : SIZE;
+    for (int j = FIRST; j < LAST; ++j)
       unsettled = unsettled || system_.pivot (j).raise > B (0.0f);
-    if constexpr (RAISES_MATTER && SIZE > 4)
-      for (int j = 1; j < 4; ++j)
-        unsettled = unsettled || system_.pivot (j).raise > B (0.0f);
     return unsettled;
   }
 
@@ -131,6 +137,39 @@ private:
   using TermsT = Terms<B, BASIS>;
   // With other constraints pivots that are raised are a rare thing.
   static constexpr bool RAISES_MATTER = CONSTRAINT == Constraint::FUNCTIONAL;
+  static constexpr bool IS_REFINED = BASIS == Basis::QUADRATIC && CONSTRAINT != Constraint::FUNCTIONAL;
+
+  /** \brief Fit what is left over at the nodes, too: floats leave few digits of ten terms, but these are small. */
+  void
+  refine ()
+  {
+    B rest[SIZE];
+    for (B &of_term : rest)
+      of_term = B (0.0f);
+    weights_.visitNodes (
+        [&] (std::size_t i, B, B t, const B *u)
+        {
+          B R[SIZE], n[3], of_fit[3];
+          const B weight = weights_.weightAt (i, t);
+          TermsT::evaluate (u, t * t, R);
+          const B height = weight * (weights_.lambda (i) * scale_ - combine<TermsT> (c_, R));
+          for (int j = 0; j < SIZE; ++j)
+            rest[j] = xsimd::fma (height, R[j], rest[j]);
+          if constexpr (CONSTRAINT == Constraint::HERMITE)
+          {
+            weights_.normal (i, n);
+            TermsT::slopes (c_, u, of_fit);
+            for (int a = 0; a < 3; ++a)
+              n[a] -= of_fit[a];
+            TermsT::addNormal (weight, u, n, rest);
+          }
+        });
+    for (int j = 0; j < SIZE; ++j)
+      rest[j] = fnma (system_.pivot (j).raise, c_[j], rest[j]);
+    system_.solve (rest);
+    for (int j = 0; j < SIZE; ++j)
+      c_[j] += rest[j];
+  }
 
   /** \brief From x_i - x to u: a term of degree p goes with ε^-p. */
   void
