@@ -20,6 +20,7 @@ GridField::GridField (const ImplicitField &field, const PolygonizerOptions &opti
   block.thicken (LEAST_WALL * voxel_size);
   const double offset = std::abs (options.iso_level);
   block.setReach (options.reach, offset, std::sqrt (3.0) * voxel_size + offset);
+  block.setLevel (options.iso_level);
 }
 
 bool

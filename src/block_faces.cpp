@@ -68,7 +68,8 @@ BlockFaces::gatherNodes (const std::vector<std::uint32_t> &which, const BlockPoi
 }
 
 void
-BlockFaces::combine (const lanes::Settings &settings, const std::vector<std::uint32_t> &which, BlockPoints &points)
+BlockFaces::combine (const lanes::Settings &settings, const lanes::Nodes &nodes,
+                     const std::vector<std::uint32_t> &which, BlockPoints &points)
 {
   settings_ = settings;
   settings_.k = Support::neighborsOfPart (settings.k);
@@ -81,7 +82,8 @@ BlockFaces::combine (const lanes::Settings &settings, const std::vector<std::uin
   listed_ = 0;
   parts_.clear ();
   for (std::size_t i = 0; i < which.size (); ++i)
-    askForParts (points, which[i], combined_[i]);
+    if (points.states[which[i]] == lanes::State::DEFINED && !hasSureSign (nodes, points, which[i]))
+      askForParts (points, which[i], combined_[i]);
   fitParts (points);
   for (std::size_t i = 0; i < which.size (); ++i)
     vote (points, which[i], combined_[i]);
@@ -109,17 +111,56 @@ BlockFaces::listNear (const Eigen::Vector3f &x, float radius)
     near_[n] = slots_[places_[n]];
 }
 
+/** \brief Whether the fit to all nodes, which are of several faces, lies on the side of the surface that they make. */
+bool
+BlockFaces::hasSureSign (const lanes::Nodes &nodes, const BlockPoints &points, std::uint32_t point) const
+{
+  // The steeper the fit, the less the faces turn, and the less it rounds between them. But in thin walls it says
+  // anything, which the nearest node tells. On scanned and sampled solids the side is another at one node
+  // in thousands.
+  constexpr float FAR = 0.15f, STEEP = 0.9f, FAR_FROM_NODE = 0.15f; // support radii
+  const float radius = points.radii[point], value = points.values[point] - level_;
+  const Eigen::Vector3f slope (points.coefficient (point, 1), points.coefficient (point, 2),
+                               points.coefficient (point, 3));
+  if (settings_.gradients || !(std::abs (value) >= FAR * radius) || slope.norm () < STEEP * radius ||
+      FaceVote::mayBeBeyondBorder (static_cast<double> (points.nearest_distances[point]), static_cast<double> (radius)))
+    return false;
+  const std::size_t i = points.nearest[point];
+  const Eigen::Vector3f way = points.position (point) - Eigen::Vector3f (nodes.x[i], nodes.y[i], nodes.z[i]);
+  const float height = way.dot (Eigen::Vector3f (nodes.nx[i], nodes.ny[i], nodes.nz[i])) - level_;
+  return (value > 0.0f ? height : -height) >= FAR_FROM_NODE * radius;
+}
+
+/** \brief Whether the nodes close to the point at hand are of one face. */
+bool
+BlockFaces::holdsOneFace () const
+{
+  constexpr auto CLOSE = static_cast<float> (FaceGroups::CLOSE * FaceGroups::CLOSE);
+  int face = -1;
+  for (std::size_t n = 0; n < near_.size (); ++n)
+  {
+    if (!(weights_[listed_ + n] <= CLOSE))
+      continue;
+    const int its = groups_.faceOfSlot (near_[n]);
+    if (its < 0 || (face >= 0 && its != face))
+      return false;
+    face = its;
+  }
+  return face >= 0;
+}
+
 /** \brief List the groups that a point sees, and the nodes that will vote. */
 void
 BlockFaces::askForParts (const BlockPoints &points, std::uint32_t point, Combined &combined)
 {
   combined.first_part = parts_.size ();
   combined.first_voter = combined.last_voter = listed_;
-  if (points.states[point] != lanes::State::DEFINED)
-    return;
   const Eigen::Vector3f x = points.position (point);
   const float radius = points.radii[point];
   listNear (x, radius);
+  const auto nearest = static_cast<double> (points.nearest_distances[point]);
+  if (FaceVote::isOneFaceEnough (nearest, static_cast<double> (radius), least_wall_) && holdsOneFace ())
+    return;
   if (!groups_.select (center_ + unit_ * x.cast<double> (), near_))
     return;
   combined.groups = std::min (groups_.count (), FaceTree::MAX_FACES);

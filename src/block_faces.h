@@ -11,6 +11,7 @@
 #include <Eigen/Core>
 
 #include <array>
+#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <vector>
@@ -52,13 +53,21 @@ public:
     least_wall_ = least_wall / unit_;
   }
 
+  /** \brief See BlockField::setLevel (). */
+  void
+  setLevel (double level)
+  {
+    level_ = static_cast<float> (level / unit_);
+  }
+
   /** \brief Put what the faces make in place of what was found for all nodes alike.
-   * \param[in] settings what that was found with
+   * \param[in] settings,nodes what that was found with
    * \param[in] which of the points are in reach of where faces are kept apart
    * \param[in,out] points those that cannot be told are left unsettled
    */
   void
-  combine (const lanes::Settings &settings, const std::vector<std::uint32_t> &which, BlockPoints &points);
+  combine (const lanes::Settings &settings, const lanes::Nodes &nodes, const std::vector<std::uint32_t> &which,
+           BlockPoints &points);
 
   /** \brief For the points last combined, by their place in \a which: the face that holds there, -1 for that of the
    * nearest node. */
@@ -114,8 +123,14 @@ private:
   void
   gatherNodes (const std::vector<std::uint32_t> &which, const BlockPoints &points);
 
+  bool
+  hasSureSign (const lanes::Nodes &nodes, const BlockPoints &points, std::uint32_t point) const;
+
   void
   listNear (const Eigen::Vector3f &x, float radius);
+
+  bool
+  holdsOneFace () const;
 
   void
   weighVoters (float radius, Combined &combined);
@@ -145,6 +160,7 @@ private:
   const lanes::Engine &engine_;
   lanes::Settings settings_;
   double unit_, least_wall_ = 0.0;
+  float level_ = NAN; // none
   FaceGroups groups_;
   Eigen::Vector3d center_ = Eigen::Vector3d::Zero ();
   double reach_of_parts_ = 0.0, reach_of_voters_ = 0.0; // that nodes were gathered for

@@ -225,7 +225,7 @@ BlockField::finishPlain ()
     support_nodes_ += plain_.supports[i];
   refuseUncovered (plain_);
   if (!at_faces_.empty ())
-    faces_.combine (settings_, at_faces_, plain_);
+    faces_.combine (settings_, nodes_.view (false), at_faces_, plain_);
 }
 
 void

@@ -42,6 +42,14 @@ public:
     faces_.thicken (least_wall);
   }
 
+  /** \brief Without gradients, points may be asked for their side of f = \a level in the first place: where faces meet,
+   * but f is clearly above or below it, the value is that of all nodes alike. Otherwise it is that of the faces. */
+  void
+  setLevel (double level)
+  {
+    faces_.setLevel (level);
+  }
+
   /** \brief Prepare for points within \a extent of \a center (local frame).
    * \param[in] on_surface whether they are expected on f = iso, more or less: fewer nodes will do
    * \return false where the field is none of canEvaluate (), or no nodes are in reach

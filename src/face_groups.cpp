@@ -88,15 +88,16 @@ FaceGroups::listPresent ()
     last = face;
   }
   std::sort (present_.begin (), present_.end ());
-  place_of_slot_.clear ();
+  place_of_slot_.resize (face_of_slot_.size ());
   int place = -1;
   last = -1;
-  for (const int face : face_of_slot_)
+  for (std::size_t slot = 0; slot < face_of_slot_.size (); ++slot)
   {
+    const int face = face_of_slot_[slot];
     if (face != last)
       place = placeOf (face);
     last = face;
-    place_of_slot_.push_back (place);
+    place_of_slot_[slot] = place;
   }
 }
 

@@ -33,9 +33,9 @@ public:
   void
   assign (std::size_t count, NodeOfT node_of)
   {
-    face_of_slot_.clear ();
-    for (std::size_t slot = 0; slot < count && faces_ != nullptr; ++slot)
-      face_of_slot_.push_back (faces_->faceOf (node_of (slot)));
+    face_of_slot_.resize (faces_ != nullptr ? count : 0);
+    for (std::size_t slot = 0; slot < face_of_slot_.size (); ++slot)
+      face_of_slot_[slot] = faces_->faceOf (node_of (slot));
     listPresent ();
   }
 
@@ -59,6 +59,9 @@ public:
   /** \brief How far from x the nodes of groups count, in support radii: thin samples of narrow faces shall not be
    * missed. */
   static constexpr double REACH = 1.5;
+
+  /** \brief Where all nodes so close to x are of one face, only that counts. */
+  static constexpr double CLOSE = 1.2;
 
   /** \brief Number of faces among the gathered value points. */
   std::size_t

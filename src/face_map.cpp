@@ -84,8 +84,8 @@ FaceMap::addSurfaces (const OrientedPoints &points, const std::vector<SharpSurfa
 void
 FaceMap::assignNodes (const OrientedPoints &points, double spacing, int threads)
 {
-  constexpr double NEAR = 2.0;         // spacings
-  constexpr float LEAST_COSINE = 0.7f; // 45 degrees
+  constexpr double SAME = 0.01, NEAR = 2.0; // spacings: faces mostly are made of the very nodes
+  constexpr float LEAST_COSINE = 0.7f;      // 45 degrees
   std::vector<Eigen::Vector3f> positions, normals;
   std::vector<int> owners;
   for (std::size_t f = 0; f < known_faces_.size (); ++f)
@@ -99,9 +99,9 @@ FaceMap::assignNodes (const OrientedPoints &points, double spacing, int threads)
   }
   const NeighborSearch::ConstPtr search = makeGridSearch (positions, threads);
   faces_.assign (points.size (), -1);
-  const auto face_at = [&] (Found &found, std::size_t i)
+  const auto face_within = [&] (double reach, FoundNodes &found, std::size_t i)
   {
-    search->withinRadius (points.positions[i], NEAR * spacing, found.nodes, found.squared);
+    search->withinRadius (points.positions[i], reach, found.nodes, found.squared);
     std::pair<float, int> nearest{HUGE_VALF, -1};
     for (std::size_t c = 0; c < found.nodes.size (); ++c)
     {
@@ -112,8 +112,12 @@ FaceMap::assignNodes (const OrientedPoints &points, double spacing, int threads)
     return nearest.second;
   };
   parallelFor (
-      points.size (), threads, [] { return Found (); },
-      [&] (Found &found, std::size_t i) { faces_[i] = face_at (found, i); });
+      points.size (), threads, [] { return FoundNodes (); },
+      [&] (FoundNodes &found, std::size_t i)
+      {
+        const int face = face_within (SAME * spacing, found, i);
+        faces_[i] = face >= 0 ? face : face_within (NEAR * spacing, found, i);
+      });
 }
 
 /** \brief Neighbours on two faces that nothing keeps apart where they are join the faces. */
@@ -125,7 +129,7 @@ FaceMap::findJoints (const OrientedPoints &points, const NeighborSearch &search,
       points.size (), threads,
       [&] (std::size_t first, std::size_t last, std::vector<Meeting> &found)
       {
-        Found near;
+        FoundNodes near;
         for (std::size_t i = first; i < last; ++i)
           if (faces_[i] >= 0)
             addJoints (points, search, spacing, i, near, found);
@@ -139,7 +143,7 @@ FaceMap::findJoints (const OrientedPoints &points, const NeighborSearch &search,
 
 void
 FaceMap::addJoints (const OrientedPoints &points, const NeighborSearch &search, double spacing, std::size_t i,
-                    Found &near, std::vector<Meeting> &joints) const
+                    FoundNodes &near, std::vector<Meeting> &joints) const
 {
   constexpr double NEIGHBORS = 4.0;     // spacings
   constexpr float BEND = 0.1f;          // of the distance: a larger step is that between two sheets

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include "found_nodes.h"
+
 #include <erkpa/neighbor_search.h>
 #include <erkpa/oriented_points.h>
 #include <erkpa/sharp_surface.h>
@@ -60,13 +62,6 @@ private:
   void
   addSurfaces (const OrientedPoints &points, const std::vector<SharpSurface::ConstPtr> &surfaces);
 
-  /** \brief Scratch memory of a query. */
-  struct Found
-  {
-    std::vector<int> nodes;
-    std::vector<float> squared;
-  };
-
   void
   assignNodes (const OrientedPoints &points, double spacing, int threads);
 
@@ -74,8 +69,8 @@ private:
   findJoints (const OrientedPoints &points, const NeighborSearch &search, double spacing, int threads);
 
   void
-  addJoints (const OrientedPoints &points, const NeighborSearch &search, double spacing, std::size_t i, Found &near,
-             std::vector<Meeting> &joints) const;
+  addJoints (const OrientedPoints &points, const NeighborSearch &search, double spacing, std::size_t i,
+             FoundNodes &near, std::vector<Meeting> &joints) const;
 
   std::vector<int> faces_; // of the nodes, by place in known_faces_
   std::vector<SharpSurface::ConstPtr> known_faces_;

@@ -216,12 +216,11 @@ separationOf (const OrientedPoints &points, int i, int j)
 } // namespace
 
 FaceSegmentation
-segmentFaces (const OrientedPoints &points, const NeighborSearch &search, const SegmentationOptions &options,
-              int threads)
+segmentFaces (const OrientedPoints &points, const PointLayout &layout, const SegmentationOptions &options, int threads)
 {
   std::vector<char> is_suspect;
-  const NodeLinks links = linkNeighbors (points, search, options, threads, is_suspect);
-  const NodeLists apart = findNodesApart (points, search, options, links, is_suspect, threads);
+  const NodeLinks links = linkNeighbors (points, *layout.grid, options, threads, is_suspect);
+  const NodeLists apart = findNodesApart (points, *layout.search, options, links, is_suspect, threads);
   FaceGrower grower (points.size (), apart);
   DisjointSets &sets = grower.grow (GrowthLister (points, options, links).list (threads));
 

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <erkpa/neighbor_search.h>
 #include <erkpa/oriented_points.h>
+#include <erkpa/point_layout.h>
 
 #include <cstddef>
 #include <vector>
@@ -47,7 +47,6 @@ struct SegmentationOptions
  * somewhere: there they are not apart, and count as one.
  */
 FaceSegmentation
-segmentFaces (const OrientedPoints &points, const NeighborSearch &search, const SegmentationOptions &options,
-              int threads);
+segmentFaces (const OrientedPoints &points, const PointLayout &layout, const SegmentationOptions &options, int threads);
 
 } // namespace erkpa

@@ -31,8 +31,28 @@ public:
   static bool
   isBeyondBorder (double nearest, double radius, double aside)
   {
-    constexpr double FAR_ASIDE = 0.65, APART = 0.5; // support radii
-    return nearest > APART * radius && aside > FAR_ASIDE;
+    constexpr double FAR_ASIDE = 0.65; // support radii
+    return mayBeBeyondBorder (nearest, radius) && aside > FAR_ASIDE;
+  }
+
+  /** \brief The same, where nothing is known of the other nodes. */
+  static bool
+  mayBeBeyondBorder (double nearest, double radius)
+  {
+    constexpr double APART = 0.5; // support radii
+    return nearest > APART * radius;
+  }
+
+  /** \brief Whether nothing is to be voted on where the nodes around x are of one face: the fit to all of them is that
+   * of the face. Not beyond borders, and not where walls may be thickened: there other faces count, too.
+   * \param[in] nearest distance of the nearest node
+   * \param[in] radius ε
+   * \param[in] least_wall see thickening ()
+   */
+  static bool
+  isOneFaceEnough (double nearest, double radius, double least_wall)
+  {
+    return !mayBeBeyondBorder (nearest, radius) && 2.0 * least_wall <= radius;
   }
 
   /** \brief Forget voters and faces.

@@ -114,13 +114,34 @@ LocalField::evaluateUnwarped (const Eigen::Vector3d &x, Task task)
     gatherUnwarped (x, 0.0);
   if (!support_.select (x))
     return false;
-  if (selectGroups (x))
+  const bool is_one_face = groups_.hasMeetings () &&
+                           FaceVote::isOneFaceEnough (support_.nearestDistance (), support_.radius (), least_wall_) &&
+                           holdsOneFace ();
+  if (!is_one_face && selectGroups (x))
     return evaluateFaces (x, task);
   face_ = nearestFace ();
   thickening_ = 0.0;
   const bool is_defined = fitSelected (x, task);
   side_key_ = sideKeyOf (face_, enrichment_.sideKey ());
   return is_defined;
+}
+
+/** \brief Whether the nodes close to x are of one face. */
+bool
+LocalField::holdsOneFace ()
+{
+  support_.listWithin (FaceGroups::CLOSE * support_.radius (), slots_near_);
+  int face = -1;
+  for (const int slot : slots_near_)
+  {
+    if (support_.points ()[static_cast<std::size_t> (slot)].side != 0)
+      continue;
+    const int its = groups_.faceOfSlot (slot);
+    if (its < 0 || (face >= 0 && its != face))
+      return false;
+    face = its;
+  }
+  return face >= 0;
 }
 
 /** \brief Group the nodes around x by their faces; false where no two groups are kept apart. */

@@ -199,6 +199,9 @@ private:
   startVote (const Eigen::Vector3d &x, int groups);
 
   bool
+  holdsOneFace ();
+
+  bool
   selectGroups (const Eigen::Vector3d &x);
 
   bool

@@ -19,8 +19,8 @@ class LocalGroups
 public:
   LocalGroups (const OrientedPoints &points, const NeighborSearch &search, const SegmentationOptions &options,
                const NodeLinks &links, const std::vector<int> &wholes)
-      : points_ (points), search_ (search), options_ (options), test_ (points, options), links_ (links),
-        wholes_ (wholes), groups_ (points.size (), OUTSIDE)
+      : points_ (points), search_ (search), options_ (options), test_ (options), links_ (links), wholes_ (wholes),
+        groups_ (points.size (), OUTSIDE)
   {
   }
 
@@ -65,7 +65,7 @@ private:
     const double reach = options_.separation_reach * options_.separation_reach;
     strangers_.clear ();
     for (std::size_t i = 0; i < ball_.size (); ++i)
-      if (static_cast<double> (squared_[i]) <= reach && !test_.areSmooth (node, ball_[i], squared_[i]))
+      if (static_cast<double> (squared_[i]) <= reach && !test_.areSmooth (points_, node, ball_[i], squared_[i]))
         strangers_.push_back (ball_[i]);
   }
 

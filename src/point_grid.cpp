@@ -228,9 +228,9 @@ PointGrid::nearestK (const Eigen::Vector3d &x, int k, std::vector<std::pair<floa
 {
   constexpr double EVERYWHERE = 1e18; // its square is still a float
   constexpr double PER_CELL = 16.0;   // points of a surface within a cell's side: see makePointGrid ()
-  constexpr double MARGIN = 1.15;
+  constexpr double MARGIN = 1.15, FIRST_MARGIN = 1.3;
   const auto wanted = std::min (static_cast<std::size_t> (k), size ());
-  double reach = cell_ * std::max (0.5, std::sqrt (static_cast<double> (k) / PER_CELL));
+  double reach = cell_ * FIRST_MARGIN * std::sqrt (static_cast<double> (k) / (M_PI * PER_CELL));
   thread_local std::vector<int> indices; // kept, for there are many small queries
   thread_local std::vector<float> squared;
   for (withinRadius (x, reach, indices, squared); indices.size () < wanted && reach < EVERYWHERE;

@@ -3,6 +3,7 @@
 #include <erkpa/sharp_detection.h>
 
 #include "face_segmentation.h"
+#include "found_nodes.h"
 #include "mesh_graph.h"
 #include "node_table.h"
 #include "noise.h"
@@ -203,15 +204,10 @@ thinOut (const std::vector<Separation> &separations, double cell)
 std::vector<double>
 radiiAt (const std::vector<Separation> &separations, const NeighborSearch &search, int k, int threads)
 {
-  struct Found
-  {
-    std::vector<int> nodes;
-    std::vector<float> squared;
-  };
   std::vector<double> radii (separations.size ());
   parallelFor (
-      separations.size (), threads, [] { return Found (); },
-      [&] (Found &found, std::size_t i)
+      separations.size (), threads, [] { return FoundNodes (); },
+      [&] (FoundNodes &found, std::size_t i)
       {
         search.nearestK (separations[i].position, k, found.nodes, found.squared);
         radii[i] = std::sqrt (static_cast<double> (*std::max_element (found.squared.begin (), found.squared.end ())));
@@ -290,7 +286,7 @@ findSharpSurfaces (const OrientedPoints &points, const PointLayout &layout, cons
   const NeighborSearch &search = *layout.search;
   const int k = layout.k;
   const SegmentationOptions segmentation = optionsFor (points, layout, options.angle, threads);
-  const FaceSegmentation found = segmentFaces (points, search, segmentation, threads);
+  const FaceSegmentation found = segmentFaces (points, layout, segmentation, threads);
   const std::vector<Stretch> stretches = gatherStretches (points, search, found, segmentation, k, threads);
   const std::vector<SharpSurface::ConstPtr> faces = makeFaces (points, found, markNear (points, stretches, threads), k);
   for (const Stretch &stretch : stretches)

@@ -1,9 +1,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "smooth_links.h"
 
+#include "nearby_nodes.h"
 #include "threads.h"
 
+#include <algorithm>
+#include <array>
 #include <atomic>
+#include <cstdint>
+#include <utility>
 
 namespace erkpa
 {
@@ -15,9 +20,8 @@ namespace
 class NeighborLinker
 {
 public:
-  NeighborLinker (const OrientedPoints &points, const NeighborSearch &search, const SegmentationOptions &options,
-                  int threads)
-      : points_ (points), search_ (search), options_ (options), threads_ (threads), test_ (points, options),
+  NeighborLinker (const OrientedPoints &points, const PointGrid &grid, const SegmentationOptions &options, int threads)
+      : points_ (points), grid_ (grid), options_ (options), threads_ (threads), test_ (options),
         near_ (std::max (options.separation_reach, options.link_reach * options.spacing)),
         far_ (options.bridge_reach * options.spacing)
   {
@@ -27,52 +31,101 @@ public:
   link (std::vector<char> &is_suspect) const
   {
     is_suspect.assign (points_.size (), 0);
-    NodeLinks links;
+    NodeLinks links (grid_);
     links.fill (
-        points_.size (), threads_, [] { return Found (); },
-        [&] (Found &found, std::size_t i, std::vector<int> &of_node)
-        { is_suspect[i] = linkWithin (near_, i, found, of_node) ? 1 : 0; });
+        threads_, [this] { return Worker (*this); },
+        [&] (Worker &worker, std::size_t first, std::size_t last, NodeLinks::Lists &lists)
+        {
+          visitRuns (worker, first, last,
+                     [&] (std::size_t from, std::size_t to) { linkNear (worker, from, to, is_suspect, lists); });
+        });
     if (!(far_ > near_))
       return links;
     const std::vector<char> is_wanted = markFar (is_suspect, links);
-    links.refill (
-        threads_, [] { return Found (); },
-        [&] (Found &found, std::size_t i, const NodeLinks::List &near, std::vector<int> &of_node)
+    links.fill (
+        threads_, [this] { return Worker (*this); },
+        [&] (Worker &worker, std::size_t first, std::size_t last, NodeLinks::Lists &lists)
         {
-          if (is_wanted[i])
-            linkWithin (far_, i, found, of_node);
-          else
-            of_node.insert (of_node.end (), near.begin (), near.end ());
+          visitRuns (worker, first, last,
+                     [&] (std::size_t from, std::size_t to) { linkFar (worker, from, to, is_wanted, links, lists); });
         });
     return links;
   }
 
 private:
-  struct Found
+  struct Worker
   {
-    std::vector<int> nodes;
-    std::vector<float> squared;
+    explicit Worker (const NeighborLinker &linker) : near (linker.points_, linker.grid_) {}
+
+    NearbyNodes near;
+    std::vector<std::uint32_t> linked; // of them
   };
+
+  /** \brief Calls visit (first, last) for the runs of places that lie close together. */
+  template <typename VisitT>
+  static void
+  visitRuns (const Worker &worker, std::size_t first, std::size_t last, VisitT visit)
+  {
+    for (std::size_t end = first; first < last; first = end)
+    {
+      end = worker.near.endOfRun (first, last);
+      visit (first, end);
+    }
+  }
+
+  void
+  linkNear (Worker &worker, std::size_t first, std::size_t last, std::vector<char> &is_suspect,
+            NodeLinks::Lists &lists) const
+  {
+    worker.near.gather (first, last, near_);
+    for (std::size_t place = first; place < last; ++place)
+    {
+      const int node = worker.near.nodeAt (place);
+      is_suspect[static_cast<std::size_t> (node)] = appendLinks (worker, node, near_, lists.nodes) ? 1 : 0;
+      lists.close ();
+    }
+  }
+
+  /** \brief Links of the wanted nodes, as far as they go; the others keep theirs. */
+  void
+  linkFar (Worker &worker, std::size_t first, std::size_t last, const std::vector<char> &is_wanted,
+           const NodeLinks &links, NodeLinks::Lists &lists) const
+  {
+    bool is_gathered = false;
+    for (std::size_t place = first; place < last; ++place)
+    {
+      const int node = worker.near.nodeAt (place);
+      if (!is_wanted[static_cast<std::size_t> (node)])
+      {
+        const NodeLinks::List near = links[static_cast<std::size_t> (node)];
+        lists.nodes.insert (lists.nodes.end (), near.begin (), near.end ());
+      }
+      else
+      {
+        if (!std::exchange (is_gathered, true))
+          worker.near.gather (first, last, far_);
+        appendLinks (worker, node, far_, lists.nodes);
+      }
+      lists.close ();
+    }
+  }
 
   /** \brief Append the links of a node with those within a reach; true where there are others close by. */
   bool
-  linkWithin (double reach, std::size_t i, Found &found, std::vector<int> &links) const
+  appendLinks (Worker &worker, int node, double reach, std::vector<int> &links) const
   {
-    search_.withinRadius (points_.positions[i], reach, found.nodes, found.squared);
-    const int node = static_cast<int> (i);
-    const auto near = static_cast<float> (near_ * near_), far = static_cast<float> (far_ * far_);
+    const NearbyNodes &near = worker.near;
+    worker.linked.resize (near.size () + lanes::MAX_WIDTH);
+    const auto i = static_cast<std::size_t> (node);
+    const Eigen::Vector3f &p = points_.positions[i], &n = points_.normals[i];
+    const std::array<float, 6> own{p[0], p[1], p[2], n[0], n[1], n[2]};
     bool has_others = false;
-    for (std::size_t n = 0; n < found.nodes.size (); ++n)
-    {
-      const int j = found.nodes[n];
-      const float squared = found.squared[n];
-      if (j == node)
-        continue;
-      if (squared <= far && test_.areLinked (node, j, squared))
-        links.push_back (j);
-      else
-        has_others = has_others || squared <= near;
-    }
+    const std::size_t count = lanes::bestEngine ().linkSmooth (
+        test_.numbers (), near.table (), near.size (), own.data (), static_cast<float> (reach * reach),
+        static_cast<float> (near_ * near_), worker.linked.data (), has_others);
+    for (std::size_t l = 0; l < count; ++l)
+      if (const int other = near.node (worker.linked[l]); other != node)
+        links.push_back (other);
     return has_others;
   }
 
@@ -80,26 +133,47 @@ private:
   std::vector<char>
   markFar (const std::vector<char> &is_suspect, const NodeLinks &links) const
   {
-    constexpr std::size_t FEW = 6;
-    const double ball = 1.3 * options_.spacing * std::sqrt (options_.ball / M_PI);
     std::vector<std::atomic<char>> marks (points_.size ());
-    parallelFor (
-        points_.size (), threads_, [] { return Found (); },
-        [&] (Found &found, std::size_t i)
-        {
-          if (links[i].size () < FEW)
-            marks[i].store (1, std::memory_order_relaxed);
-          if (!is_suspect[i])
-            return;
-          search_.withinRadius (points_.positions[i], ball, found.nodes, found.squared);
-          for (const int j : found.nodes)
-            marks[static_cast<std::size_t> (j)].store (1, std::memory_order_relaxed);
-        });
+    constexpr std::size_t STRETCH = 256; // places
+    parallelFor ((points_.size () + STRETCH - 1) / STRETCH, threads_, [this] { return Worker (*this); },
+                 [&] (Worker &worker, std::size_t part)
+                 {
+                   const std::size_t first = part * STRETCH, last = std::min (points_.size (), first + STRETCH);
+                   visitRuns (worker, first, last,
+                              [&] (std::size_t from, std::size_t to)
+                              { mark (worker, from, to, is_suspect, links, marks); });
+                 });
     return {marks.begin (), marks.end ()};
   }
 
+  void
+  mark (Worker &worker, std::size_t first, std::size_t last, const std::vector<char> &is_suspect,
+        const NodeLinks &links, std::vector<std::atomic<char>> &marks) const
+  {
+    constexpr std::size_t FEW = 6;
+    const double ball = 1.3 * options_.spacing * std::sqrt (options_.ball / M_PI);
+    const auto squared_ball = static_cast<float> (ball * ball);
+    bool is_gathered = false;
+    for (std::size_t place = first; place < last; ++place)
+    {
+      const auto node = static_cast<std::size_t> (worker.near.nodeAt (place));
+      if (links[node].size () < FEW)
+        marks[node].store (1, std::memory_order_relaxed);
+      if (!is_suspect[node])
+        continue;
+      if (!std::exchange (is_gathered, true))
+        worker.near.gather (first, last, ball);
+      for (std::size_t i = 0; i < worker.near.size (); ++i)
+      {
+        const auto other = static_cast<std::size_t> (worker.near.node (i));
+        if ((points_.positions[other] - points_.positions[node]).squaredNorm () <= squared_ball)
+          marks[other].store (1, std::memory_order_relaxed);
+      }
+    }
+  }
+
   const OrientedPoints &points_;
-  const NeighborSearch &search_;
+  const PointGrid &grid_;
   const SegmentationOptions &options_;
   int threads_;
   const SmoothnessTest test_;
@@ -109,10 +183,10 @@ private:
 } // namespace
 
 NodeLinks
-linkNeighbors (const OrientedPoints &points, const NeighborSearch &search, const SegmentationOptions &options,
-               int threads, std::vector<char> &is_suspect)
+linkNeighbors (const OrientedPoints &points, const PointGrid &grid, const SegmentationOptions &options, int threads,
+               std::vector<char> &is_suspect)
 {
-  return NeighborLinker (points, search, options, threads).link (is_suspect);
+  return NeighborLinker (points, grid, options, threads).link (is_suspect);
 }
 
 } // namespace erkpa

@@ -2,9 +2,9 @@
 #pragma once
 
 #include "face_segmentation.h"
+#include "lanes/lanes.h"
 #include "node_links.h"
 
-#include <algorithm>
 #include <cmath>
 #include <cstddef>
 #include <vector>
@@ -16,59 +16,65 @@ namespace erkpa
 class SmoothnessTest
 {
 public:
-  SmoothnessTest (const OrientedPoints &points, const SegmentationOptions &options)
-      : points_ (points), chord_ (static_cast<float> (options.chord)),
-        cosine_ (static_cast<float> (std::cos (options.angle))),
-        far_cosine_ (static_cast<float> (std::cos (BRIDGE_ANGLE * options.angle))),
-        squared_reach_ (static_cast<float> (std::pow (options.link_reach * options.spacing, 2)))
+  explicit SmoothnessTest (const SegmentationOptions &options)
   {
+    numbers_.chord = static_cast<float> (options.chord);
+    numbers_.bend = BEND;
+    numbers_.far_bend = BRIDGE_BEND;
+    numbers_.cosine = static_cast<float> (std::cos (options.angle));
+    numbers_.far_cosine = static_cast<float> (std::cos (BRIDGE_ANGLE * options.angle));
+    numbers_.squared_reach = static_cast<float> (std::pow (options.link_reach * options.spacing, 2));
   }
 
-  /** \brief Whether two nodes fit to one smooth surface.
+  /** \brief Whether two nodes fit to one smooth surface: similar normals, and across them no step.
    * \param[in] squared their squared distance
    */
   bool
-  areSmooth (int i, int j, float squared) const
+  areSmooth (const OrientedPoints &points, int i, int j, float squared) const
   {
-    return areSmooth (i, j, squared, cosine_, BEND);
+    return fit (points, i, j, squared, numbers_.cosine, numbers_.bend);
   }
 
   /** \brief Whether to link two nodes. Those farther apart must agree better: they bridge gaps in narrow faces. */
   bool
-  areLinked (int i, int j, float squared) const
+  areLinked (const OrientedPoints &points, int i, int j, float squared) const
   {
-    return squared <= squared_reach_ ? areSmooth (i, j, squared, cosine_, BEND)
-                                     : areSmooth (i, j, squared, far_cosine_, BRIDGE_BEND);
+    return squared <= numbers_.squared_reach ? areSmooth (points, i, j, squared)
+                                             : fit (points, i, j, squared, numbers_.far_cosine, numbers_.far_bend);
+  }
+
+  /** \brief The same for lanes: Engine::linkSmooth. */
+  const lanes::Smoothness &
+  numbers () const
+  {
+    return numbers_;
   }
 
 private:
-  static constexpr float BEND = 0.2f, BRIDGE_BEND = 0.08f;
+  static constexpr float BEND = 0.2f, BRIDGE_BEND = 0.08f; // as a share of the distance; a circular arc has no step
   static constexpr double BRIDGE_ANGLE = 0.7;
 
-  /** \brief Similar normals, and across them no step.
-   * \param[in] bend how large a step may be as a share of the distance; that of a circular arc is zero
-   */
   bool
-  areSmooth (int i, int j, float squared, float least_cosine, float bend) const
+  fit (const OrientedPoints &points, int i, int j, float squared, float least_cosine, float bend) const
   {
     const auto from = static_cast<std::size_t> (i), to = static_cast<std::size_t> (j);
-    const Eigen::Vector3f &n = points_.normals[from], &m = points_.normals[to];
-    const float step = 0.5f * std::abs ((points_.positions[to] - points_.positions[from]).dot (n + m));
-    return n.dot (m) >= least_cosine && (step <= chord_ || step * step <= bend * bend * squared);
+    const Eigen::Vector3f &n = points.normals[from], &m = points.normals[to];
+    const float step = 0.5f * std::abs ((points.positions[to] - points.positions[from]).dot (n + m));
+    return n.dot (m) >= least_cosine && (step <= numbers_.chord || step * step <= bend * bend * squared);
   }
 
-  const OrientedPoints &points_;
-  float chord_, cosine_, far_cosine_, squared_reach_;
+  lanes::Smoothness numbers_{};
 };
 
 /** \brief Links nodes with the neighbours that fit to them.
  *
  * Links go both ways, but for those of a length that only one of two nodes asks for. Far ones bridge gaps, and tell
- * faces apart in the balls of suspects: elsewhere near ones do. \param[out] is_suspect of each node, whether others are
- * close to it, too
+ * faces apart in the balls of suspects: elsewhere near ones do.
+ * \param[in] grid over the positions of \a points
+ * \param[out] is_suspect of each node, whether others are close to it, too
  */
 NodeLinks
-linkNeighbors (const OrientedPoints &points, const NeighborSearch &search, const SegmentationOptions &options,
-               int threads, std::vector<char> &is_suspect);
+linkNeighbors (const OrientedPoints &points, const PointGrid &grid, const SegmentationOptions &options, int threads,
+               std::vector<char> &is_suspect);
 
 } // namespace erkpa

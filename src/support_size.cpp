@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "support_size.h"
 
+#include "found_nodes.h"
 #include "threads.h"
 
 #include <algorithm>
@@ -116,14 +117,9 @@ SupportSize::radiiOfNodes (const NeighborSearch &search, int threads) const
   if (kind_ == Kind::PER_NODE)
     return points_.radii;
   std::vector<float> radii (points_.size ());
-  struct Found
-  {
-    std::vector<int> nodes;
-    std::vector<float> squared;
-  };
   parallelFor (
-      radii.size (), threads, [] { return Found (); },
-      [&] (Found &found, std::size_t i)
+      radii.size (), threads, [] { return FoundNodes (); },
+      [&] (FoundNodes &found, std::size_t i)
       {
         if (kind_ != Kind::NEAREST)
         {

@@ -242,6 +242,16 @@ struct Trees
   const Step (*steps)[FaceFits::MAX - 1]; ///< of each, one less than there are faces
 };
 
+/** \brief What neighbours on one smooth surface agree in: see SmoothnessTest. */
+struct Smoothness
+{
+  float chord;          ///< a step across the normals is never larger, ...
+  float bend, far_bend; ///< ... or it is such a share of the distance at most
+  float cosine;         ///< least one of the angle between the normals
+  float far_cosine;     ///< the same of neighbours that are farther apart than ...
+  float squared_reach;  ///< ... this, squared
+};
+
 /** \brief One instruction set. */
 struct Engine
 {
@@ -253,6 +263,16 @@ struct Engine
 
   /** \brief The sum of weight · |value| at the voters for each tree. */
   void (*measureTrees) (const Voters &voters, const FaceFits &fits, const Trees &trees, float *distances);
+
+  /** \brief The places of those nodes that fit to one.
+   * \param[in] node position and normal of the one
+   * \param[in] most,close squared distances
+   * \param[out] linked places of those within \a most that fit; has room for all and MAX_WIDTH more
+   * \param[out] has_others whether some within \a close do not fit
+   * \return how many fit
+   */
+  std::size_t (*linkSmooth) (const Smoothness &smoothness, const Table &nodes, std::size_t count, const float *node,
+                             float most, float close, std::uint32_t *linked, bool &has_others);
 };
 
 /** \brief The engines this processor can run, the widest last; never empty. */

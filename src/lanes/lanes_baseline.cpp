@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "lane_election.h"
 #include "lane_engine.h"
+#include "lane_links.h"
 #include "lane_search.h"
 
 namespace erkpa::lanes
@@ -8,7 +9,7 @@ namespace erkpa::lanes
 
 using Arch = xsimd::default_arch;
 extern const Engine BASELINE;
-constexpr Engine BASELINE{"baseline", xsimd::batch<float, Arch>::size, &SEARCH<Arch>, evaluate<Arch>,
-                          measureTrees<Arch>};
+constexpr Engine BASELINE{
+    "baseline", xsimd::batch<float, Arch>::size, &SEARCH<Arch>, evaluate<Arch>, measureTrees<Arch>, linkSmooth<Arch>};
 
 } // namespace erkpa::lanes

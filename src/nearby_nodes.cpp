@@ -1,0 +1,74 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "nearby_nodes.h"
+
+#include <Eigen/Geometry>
+
+#include <algorithm>
+
+namespace erkpa
+{
+
+namespace
+{
+
+constexpr double ROUNDING = 1e-5; // searches measure in float
+
+} // namespace
+
+std::size_t
+NearbyNodes::endOfRun (std::size_t first, std::size_t last) const
+{
+  const auto side = static_cast<float> (grid_.cell ());
+  Eigen::AlignedBox3f box (positionAt (first));
+  std::size_t end = first + 1;
+  for (; end < last; ++end)
+  {
+    box.extend (positionAt (end));
+    if (!(box.sizes ().maxCoeff () <= side))
+      break;
+  }
+  return end;
+}
+
+void
+NearbyNodes::gather (std::size_t first, std::size_t last, double reach)
+{
+  Eigen::AlignedBox3f box;
+  for (std::size_t place = first; place < last; ++place)
+    box.extend (positionAt (place));
+  const Eigen::Vector3f center = box.center ();
+  const double all = 0.5 * static_cast<double> (box.diagonal ().norm ()) + reach;
+  std::size_t most = lanes::MAX_WIDTH;
+  stretches_.clear ();
+  grid_.visitNear (center.cast<double> (), all,
+                   [&] (std::size_t from, std::size_t to)
+                   {
+                     stretches_.push_back ({static_cast<std::uint32_t> (from), static_cast<std::uint32_t> (to)});
+                     most += to - from;
+                   });
+  places_.resize (std::max (places_.size (), most));
+  squared_.resize (places_.size ());
+  const lanes::Cloud cloud{grid_.coordinates (0).data (), grid_.coordinates (1).data (), grid_.coordinates (2).data ()};
+  count_ = lanes::bestEngine ().search->findWithin (cloud, stretches_.data (), stretches_.size (), center.data (),
+                                                    static_cast<float> (all * all * (1.0 + ROUNDING)),
+                                                    {places_.data (), squared_.data ()});
+  copyColumns ();
+}
+
+void
+NearbyNodes::copyColumns ()
+{
+  for (std::vector<float> &column : columns_)
+    column.resize (std::max (column.size (), count_));
+  for (std::size_t i = 0; i < count_; ++i)
+  {
+    const Eigen::Vector3f &normal = points_.normals[static_cast<std::size_t> (node (i))];
+    for (std::size_t a = 0; a < 3; ++a)
+    {
+      columns_[a][i] = grid_.coordinates (static_cast<int> (a))[places_[i]];
+      columns_[3 + a][i] = normal[static_cast<Eigen::Index> (a)];
+    }
+  }
+}
+
+} // namespace erkpa

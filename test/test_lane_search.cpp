@@ -1,0 +1,190 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// The search in lanes, and the links that are found with it.
+#include "field_tests.h"
+
+#include "lanes/lanes.h"
+#include "smooth_links.h"
+
+#include <erkpa/point_layout.h>
+
+#include <algorithm>
+#include <array>
+
+TEST (LaneSearch, FindsThePointsWithinADistanceWithEveryInstructionSet)
+{
+  constexpr std::size_t COUNT = 1000;
+  std::array<std::vector<float>, 3> x;
+  for (std::vector<float> &coordinates : x)
+    for (std::size_t i = 0; i < COUNT; ++i)
+      coordinates.push_back (static_cast<float> (randomPoint (1.0)[0]));
+  const std::vector<erkpa::lanes::Stretch> stretches{{3, 4}, {10, 27}, {32, 32}, {64, 96}, {100, 999}};
+  const std::array<float, 3> center{0.1f, -0.2f, 0.3f};
+  std::size_t engines = 0;
+  const erkpa::lanes::Engine *const *engine = erkpa::lanes::engines (engines);
+  for (std::size_t e = 0; e < engines; ++e)
+    for (const float limit : {0.0f, 0.2f, 0.7f, 100.0f})
+    {
+      std::vector<std::uint32_t> places (COUNT + erkpa::lanes::MAX_WIDTH), expected;
+      std::vector<float> squared (places.size ());
+      const erkpa::lanes::Found found{places.data (), squared.data ()};
+      const std::size_t kept =
+          engine[e]->search->findWithin ({x[0].data (), x[1].data (), x[2].data ()}, stretches.data (),
+                                         stretches.size (), center.data (), limit, found);
+      for (const erkpa::lanes::Stretch &stretch : stretches)
+        for (std::uint32_t i = stretch.first; i < stretch.last; ++i)
+        {
+          const Vector3d way (x[0][i] - center[0], x[1][i] - center[1], x[2][i] - center[2]);
+          if (way.squaredNorm () <= static_cast<double> (limit))
+            expected.push_back (i);
+        }
+      EXPECT_EQ (std::vector<std::uint32_t> (places.begin (), places.begin () + static_cast<long> (kept)), expected)
+          << engine[e]->name << " within " << limit;
+      const std::size_t within = engine[e]->search->countWithin (squared.data (), kept, 0.5f * limit);
+      EXPECT_EQ (std::count_if (squared.begin (), squared.begin () + static_cast<long> (kept),
+                                [&] (float s) { return s <= 0.5f * limit; }),
+                 static_cast<long> (within))
+          << engine[e]->name;
+      std::array<std::vector<float>, 6> copied;
+      std::vector<std::uint32_t> copied_places (places.size ());
+      erkpa::lanes::Table table{};
+      std::vector<float> copied_squared (places.size ());
+      erkpa::lanes::Copies copies{copied_places.data (), {}, copied_squared.data ()};
+      for (std::size_t a = 0; a < copied.size (); ++a)
+      {
+        copied[a].resize (places.size ());
+        table.columns[a] = x[a % 3].data (); // normals: whatever
+        copies.columns[a] = copied[a].data ();
+      }
+      ASSERT_EQ (engine[e]->search->copyWithin (table, stretches.data (), stretches.size (), center.data (), limit,
+                                                2.0f, copies),
+                 kept)
+          << engine[e]->name;
+      EXPECT_TRUE (std::equal (squared.begin (), squared.begin () + static_cast<long> (kept), copied_squared.begin ()));
+      for (std::size_t i = 0; i < kept; ++i)
+        for (std::size_t a = 0; a < 3; ++a)
+        {
+          EXPECT_EQ (copied_places[i], places[i]);
+          EXPECT_EQ (copied[a][i], (x[a][places[i]] - center[a]) * 2.0f) << engine[e]->name;
+          EXPECT_EQ (copied[3 + a][i], x[a][places[i]]) << engine[e]->name;
+        }
+      std::fill_n (table.columns + 3, 3, nullptr);
+      copies.squared = nullptr;
+      const std::array<std::vector<float>, 6> before = copied;
+      for (std::size_t a = 0; a < 3; ++a)
+        std::fill (copied[a].begin (), copied[a].end (), 0.0f);
+      ASSERT_EQ (engine[e]->search->copyWithin (table, stretches.data (), stretches.size (), center.data (), limit,
+                                                2.0f, copies),
+                 kept)
+          << engine[e]->name;
+      for (std::size_t a = 0; a < 6; ++a)
+        EXPECT_TRUE (std::equal (copied[a].begin (), copied[a].begin () + static_cast<long> (kept), before[a].begin ()))
+            << engine[e]->name << " without normals and squares";
+    }
+}
+
+namespace
+{
+
+erkpa::SegmentationOptions
+segmentationFor (double spacing)
+{
+  erkpa::SegmentationOptions options;
+  options.spacing = spacing;
+  options.separation_reach = 2.5 * spacing;
+  options.chord = 0.02 * spacing;
+  return options;
+}
+
+float
+squaredDistance (const erkpa::OrientedPoints &points, int i, int j)
+{
+  return (points.positions[static_cast<std::size_t> (j)] - points.positions[static_cast<std::size_t> (i)])
+      .squaredNorm ();
+}
+
+} // namespace
+
+TEST (LaneLinks, LinksWhatTheSmoothnessTestDoesWithEveryInstructionSet)
+{
+  constexpr int COUNT = 403;
+  constexpr float MOST = 0.5f, CLOSE = 0.2f;
+  erkpa::OrientedPoints points;
+  std::array<std::vector<float>, 6> columns;
+  for (int i = 0; i < COUNT; ++i)
+  {
+    points.positions.push_back (randomPoint (0.5).cast<float> ());
+    points.normals.push_back ((Vector3d (0.0, 0.0, 1.0) + randomPoint (0.5)).normalized ().cast<float> ());
+    for (std::size_t a = 0; a < 3; ++a)
+    {
+      columns[a].push_back (points.positions.back ()[static_cast<Eigen::Index> (a)]);
+      columns[3 + a].push_back (points.normals.back ()[static_cast<Eigen::Index> (a)]);
+    }
+  }
+  erkpa::lanes::Table table{};
+  for (std::size_t c = 0; c < columns.size (); ++c)
+    table.columns[c] = columns[c].data ();
+  const erkpa::SmoothnessTest test (segmentationFor (0.12));
+  std::size_t engines = 0, fitting = 0;
+  const erkpa::lanes::Engine *const *engine = erkpa::lanes::engines (engines);
+  for (std::size_t e = 0; e < engines; ++e)
+    for (int node = 0; node < COUNT; ++node)
+    {
+      std::vector<std::uint32_t> linked (COUNT + erkpa::lanes::MAX_WIDTH), expected;
+      bool has_others = false, expects_others = false;
+      for (int j = 0; j < COUNT; ++j)
+      {
+        const float squared = squaredDistance (points, node, j);
+        const bool is_linked = test.areLinked (points, node, j, squared);
+        if (is_linked && squared <= MOST)
+          expected.push_back (static_cast<std::uint32_t> (j));
+        expects_others = expects_others || (!is_linked && squared <= CLOSE);
+      }
+      std::array<float, 6> own{};
+      for (std::size_t c = 0; c < own.size (); ++c)
+        own[c] = columns[c][static_cast<std::size_t> (node)];
+      linked.resize (
+          engine[e]->linkSmooth (test.numbers (), table, COUNT, own.data (), MOST, CLOSE, linked.data (), has_others));
+      EXPECT_EQ (linked, expected) << engine[e]->name;
+      EXPECT_EQ (has_others, expects_others) << engine[e]->name;
+      fitting += expected.size ();
+    }
+  EXPECT_GT (fitting, 3 * engines * COUNT) << "some fit";
+  EXPECT_LT (fitting, engines * COUNT * COUNT / 3) << "others do not";
+}
+
+TEST (SmoothLinks, LeadToAllNeighborsOnTheSameFaceAndToNoOthers)
+{
+  const auto points = shapes::points (shapes::box (4000, {1.0, 0.6, 0.4}));
+  const erkpa::PointLayout layout (*points, 0);
+  const erkpa::SegmentationOptions options = segmentationFor (layout.spacing);
+  std::vector<char> is_suspect;
+  const erkpa::NodeLinks links = erkpa::linkNeighbors (*points, *layout.grid, options, 2, is_suspect);
+  const erkpa::SmoothnessTest test (options);
+  const double close = options.separation_reach, far = options.bridge_reach * options.spacing;
+  const auto count = static_cast<int> (points->size ());
+  int suspects = 0;
+  for (int i = 0; i < count; ++i)
+  {
+    const auto node = static_cast<std::size_t> (i);
+    std::vector<int> found (links[node].begin (), links[node].end ()), missing;
+    std::sort (found.begin (), found.end ());
+    bool has_others = false;
+    for (int j = 0; j < count; ++j)
+    {
+      const float squared = squaredDistance (*points, i, j);
+      const bool is_linked = j != i && test.areLinked (*points, i, j, squared);
+      const bool is_found = std::binary_search (found.begin (), found.end (), j);
+      const auto distance = std::sqrt (static_cast<double> (squared));
+      ASSERT_FALSE (is_found && (!is_linked || distance > 1.0001 * far)) << i << " and " << j;
+      if (is_linked && distance < 0.9999 * close && !is_found)
+        missing.push_back (j);
+      has_others = has_others || (j != i && !is_linked && distance < 0.9999 * close);
+    }
+    EXPECT_TRUE (missing.empty ()) << i;
+    EXPECT_EQ (is_suspect[node] != 0, has_others) << i;
+    suspects += is_suspect[node];
+  }
+  EXPECT_GT (suspects, count / 10) << "along the edges";
+  EXPECT_LT (suspects, count / 2);
+}
