@@ -82,7 +82,7 @@ BlockFaces::combine (const lanes::Settings &settings, const lanes::Nodes &nodes,
   listed_ = 0;
   parts_.clear ();
   for (std::size_t i = 0; i < which.size (); ++i)
-    if (points.states[which[i]] == lanes::State::DEFINED && !hasSureSign (nodes, points, which[i]))
+    if (points.states[which[i]] == lanes::State::DEFINED && !isClearOfSurface (nodes, points, which[i]))
       askForParts (points, which[i], combined_[i]);
   fitParts (points);
   for (std::size_t i = 0; i < which.size (); ++i)
@@ -111,42 +111,39 @@ BlockFaces::listNear (const Eigen::Vector3f &x, float radius)
     near_[n] = slots_[places_[n]];
 }
 
-/** \brief Whether the fit to all nodes, which are of several faces, lies on the side of the surface that they make. */
+/** \brief Whether a point is so clear of the surface that the fit to all nodes tells its side, whatever the faces.
+ *
+ * The steeper the fit, the less the faces turn, and the less it rounds between them; in thin walls it says anything,
+ * which the nearest node tells. Of such points of sampled solids less than one in a thousand was on the other side of
+ * what the faces make, all where data contradicts itself. Functional values have no slope, and are never clear.
+ */
 bool
-BlockFaces::hasSureSign (const lanes::Nodes &nodes, const BlockPoints &points, std::uint32_t point) const
+BlockFaces::isClearOfSurface (const lanes::Nodes &nodes, const BlockPoints &points, std::uint32_t point) const
 {
-  // The steeper the fit, the less the faces turn, and the less it rounds between them. But in thin walls it says
-  // anything, which the nearest node tells. On scanned and sampled solids the side is another at one node
-  // in thousands.
-  constexpr float FAR = 0.15f, STEEP = 0.9f, FAR_FROM_NODE = 0.15f; // support radii
+  constexpr float FAR = 0.15f, STEEP = 0.9f; // support radii
   const float radius = points.radii[point], value = points.values[point] - level_;
   const Eigen::Vector3f slope (points.coefficient (point, 1), points.coefficient (point, 2),
                                points.coefficient (point, 3));
   if (settings_.gradients || !(std::abs (value) >= FAR * radius) || slope.norm () < STEEP * radius ||
-      FaceVote::mayBeBeyondBorder (static_cast<double> (points.nearest_distances[point]), static_cast<double> (radius)))
+      !FaceVote::isOneFaceEnough (static_cast<double> (points.nearest_distances[point]), static_cast<double> (radius),
+                                  least_wall_))
     return false;
   const std::size_t i = points.nearest[point];
   const Eigen::Vector3f way = points.position (point) - Eigen::Vector3f (nodes.x[i], nodes.y[i], nodes.z[i]);
   const float height = way.dot (Eigen::Vector3f (nodes.nx[i], nodes.ny[i], nodes.nz[i])) - level_;
-  return (value > 0.0f ? height : -height) >= FAR_FROM_NODE * radius;
+  return (value > 0.0f ? height : -height) >= FAR * radius;
 }
 
 /** \brief Whether the nodes close to the point at hand are of one face. */
 bool
-BlockFaces::holdsOneFace () const
+BlockFaces::holdsOneFace (float radius)
 {
-  constexpr auto CLOSE = static_cast<float> (FaceGroups::CLOSE * FaceGroups::CLOSE);
-  int face = -1;
+  const float close = static_cast<float> (FaceGroups::CLOSE) * radius;
+  slots_close_.clear ();
   for (std::size_t n = 0; n < near_.size (); ++n)
-  {
-    if (!(weights_[listed_ + n] <= CLOSE))
-      continue;
-    const int its = groups_.faceOfSlot (near_[n]);
-    if (its < 0 || (face >= 0 && its != face))
-      return false;
-    face = its;
-  }
-  return face >= 0;
+    if (weights_[listed_ + n] <= close * close)
+      slots_close_.push_back (near_[n]);
+  return groups_.areOfOneFace (slots_close_);
 }
 
 /** \brief List the groups that a point sees, and the nodes that will vote. */
@@ -159,7 +156,7 @@ BlockFaces::askForParts (const BlockPoints &points, std::uint32_t point, Combine
   const float radius = points.radii[point];
   listNear (x, radius);
   const auto nearest = static_cast<double> (points.nearest_distances[point]);
-  if (FaceVote::isOneFaceEnough (nearest, static_cast<double> (radius), least_wall_) && holdsOneFace ())
+  if (FaceVote::isOneFaceEnough (nearest, static_cast<double> (radius), least_wall_) && holdsOneFace (radius))
     return;
   if (!groups_.select (center_ + unit_ * x.cast<double> (), near_))
     return;

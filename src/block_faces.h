@@ -124,13 +124,13 @@ private:
   gatherNodes (const std::vector<std::uint32_t> &which, const BlockPoints &points);
 
   bool
-  hasSureSign (const lanes::Nodes &nodes, const BlockPoints &points, std::uint32_t point) const;
+  isClearOfSurface (const lanes::Nodes &nodes, const BlockPoints &points, std::uint32_t point) const;
 
   void
   listNear (const Eigen::Vector3f &x, float radius);
 
   bool
-  holdsOneFace () const;
+  holdsOneFace (float radius);
 
   void
   weighVoters (float radius, Combined &combined);
@@ -174,6 +174,7 @@ private:
   std::vector<Part> parts_;
   std::vector<std::uint32_t> parts_to_fit_; // those of one group
   std::vector<int> near_;                   // nodes around a point, among all_
+  std::vector<int> slots_close_;            // those within FaceGroups::CLOSE
   std::vector<std::uint32_t> places_;       // the same, among near_points_
   FaceVote vote_;
   std::size_t evaluations_ = 0, support_nodes_ = 0;

@@ -42,8 +42,8 @@ public:
     faces_.thicken (least_wall);
   }
 
-  /** \brief Without gradients, points may be asked for their side of f = \a level in the first place: where faces meet,
-   * but f is clearly above or below it, the value is that of all nodes alike. Otherwise it is that of the faces. */
+  /** \brief Say which surface f = \a level is looked for: without gradients, points that are clear of it then have the
+   * value of all nodes alike where faces meet, and only its side of the level is that of the faces. */
   void
   setLevel (double level)
   {
@@ -90,7 +90,7 @@ public:
     return at (point).in_reach[placeOf (point)] != 0;
   }
 
-  /** \brief Whether value and gradient are as LocalField's; false also where f is undefined. */
+  /** \brief Whether value (but see setLevel ()) and gradient are as LocalField's; false also where f is undefined. */
   bool
   isSettled (std::size_t point) const
   {

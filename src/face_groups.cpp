@@ -186,6 +186,14 @@ FaceGroups::keepsApart (int face, int other, const Eigen::Vector3d &x) const
   return any;
 }
 
+bool
+FaceGroups::areOfOneFace (const std::vector<int> &slots) const
+{
+  return !slots.empty () && faceOfSlot (slots.front ()) >= 0 &&
+         std::all_of (slots.begin (), slots.end (),
+                      [&] (int slot) { return faceOfSlot (slot) == faceOfSlot (slots.front ()); });
+}
+
 /** \brief Make the groups that have nodes in reach. */
 void
 FaceGroups::countNodes (const std::vector<int> &near)

@@ -60,8 +60,12 @@ public:
    * missed. */
   static constexpr double REACH = 1.5;
 
-  /** \brief Where all nodes so close to x are of one face, only that counts. */
+  /** \brief Support radii: where all nodes within are of one face, no other face counts. */
   static constexpr double CLOSE = 1.2;
+
+  /** \brief Whether some gathered value points, at least one, are all of the same face. */
+  bool
+  areOfOneFace (const std::vector<int> &slots) const;
 
   /** \brief Number of faces among the gathered value points. */
   std::size_t

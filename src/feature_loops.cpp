@@ -59,7 +59,7 @@ public:
 private:
   static constexpr double TOLERANCE = 1e-5; // voxels
   static constexpr double REACH = 2.5;      // voxels that a vertex may be away from the middle of its loop
-  static constexpr double NEAR = 1.0;       // voxels that few of them are
+  static constexpr double NEAR = 0.7;       // voxels that few of them are
 
   const Eigen::Vector3d &
   position (int v) const

@@ -114,6 +114,7 @@ LocalField::evaluateUnwarped (const Eigen::Vector3d &x, Task task)
     gatherUnwarped (x, 0.0);
   if (!support_.select (x))
     return false;
+  // At creases both faces are close: there sampleOnSides () makes no such exception.
   const bool is_one_face = groups_.hasMeetings () &&
                            FaceVote::isOneFaceEnough (support_.nearestDistance (), support_.radius (), least_wall_) &&
                            holdsOneFace ();
@@ -131,17 +132,9 @@ bool
 LocalField::holdsOneFace ()
 {
   support_.listWithin (FaceGroups::CLOSE * support_.radius (), slots_near_);
-  int face = -1;
-  for (const int slot : slots_near_)
-  {
-    if (support_.points ()[static_cast<std::size_t> (slot)].side != 0)
-      continue;
-    const int its = groups_.faceOfSlot (slot);
-    if (its < 0 || (face >= 0 && its != face))
-      return false;
-    face = its;
-  }
-  return face >= 0;
+  const auto is_off = [this] (int slot) { return support_.points ()[static_cast<std::size_t> (slot)].side != 0; };
+  slots_near_.erase (std::remove_if (slots_near_.begin (), slots_near_.end (), is_off), slots_near_.end ());
+  return groups_.areOfOneFace (slots_near_);
 }
 
 /** \brief Group the nodes around x by their faces; false where no two groups are kept apart. */

@@ -40,13 +40,10 @@ volume (const Vector3d &a, const Vector3d &b, const Vector3d &c, const Vector3d 
   return (b - a).cross (c - a).dot (tip - a);
 }
 
-/** \brief Whether the line from p to q passes through the inside of a triangle. */
+/** \brief Whether the line from p to q, which lie on either side of a triangle's plane, passes through its inside. */
 bool
 pierces (const Vector3d &p, const Vector3d &q, const Vector3d &a, const Vector3d &b, const Vector3d &c)
 {
-  const double from = volume (a, b, c, p), to = volume (a, b, c, q);
-  if (!(from * to < 0.0))
-    return false;
   const double ab = volume (p, q, a, b), bc = volume (p, q, b, c), ca = volume (p, q, c, a);
   return (ab > 0.0 && bc > 0.0 && ca > 0.0) || (ab < 0.0 && bc < 0.0 && ca < 0.0);
 }
@@ -55,12 +52,15 @@ pierces (const Vector3d &p, const Vector3d &q, const Vector3d &a, const Vector3d
 bool
 hasPiercingSide (const Positions &positions, const Triangle &one, const Triangle &other)
 {
+  const Vector3d &a = at (positions, other[0]), &b = at (positions, other[1]), &c = at (positions, other[2]);
+  std::array<double, 3> heights{}; // of the vertices that are not shared; those have none
+  for (std::size_t i = 0; i < 3; ++i)
+    if (!hasVertex (other, one[i]))
+      heights[i] = volume (a, b, c, at (positions, one[i]));
   for (std::size_t i = 0; i < 3; ++i)
   {
-    const int p = one[i], q = one[(i + 1) % 3];
-    if (!hasVertex (other, p) && !hasVertex (other, q) &&
-        pierces (at (positions, p), at (positions, q), at (positions, other[0]), at (positions, other[1]),
-                 at (positions, other[2])))
+    const std::size_t next = (i + 1) % 3;
+    if (heights[i] * heights[next] < 0.0 && pierces (at (positions, one[i]), at (positions, one[next]), a, b, c))
       return true;
   }
   return false;

@@ -37,7 +37,8 @@ NearbyNodes::gather (std::size_t first, std::size_t last, double reach)
   for (std::size_t place = first; place < last; ++place)
     box.extend (positionAt (place));
   const Eigen::Vector3f center = box.center ();
-  const double all = 0.5 * static_cast<double> (box.diagonal ().norm ()) + reach;
+  const double exact = 0.5 * static_cast<double> (box.diagonal ().norm ()) + reach;
+  const double all = exact + ROUNDING * (exact + static_cast<double> (center.norm ()));
   std::size_t most = lanes::MAX_WIDTH;
   stretches_.clear ();
   grid_.visitNear (center.cast<double> (), all,
@@ -49,9 +50,9 @@ NearbyNodes::gather (std::size_t first, std::size_t last, double reach)
   places_.resize (std::max (places_.size (), most));
   squared_.resize (places_.size ());
   const lanes::Cloud cloud{grid_.coordinates (0).data (), grid_.coordinates (1).data (), grid_.coordinates (2).data ()};
-  count_ = lanes::bestEngine ().search->findWithin (cloud, stretches_.data (), stretches_.size (), center.data (),
-                                                    static_cast<float> (all * all * (1.0 + ROUNDING)),
-                                                    {places_.data (), squared_.data ()});
+  count_ =
+      lanes::bestEngine ().search->findWithin (cloud, stretches_.data (), stretches_.size (), center.data (),
+                                               static_cast<float> (all * all), {places_.data (), squared_.data ()});
   copyColumns ();
 }
 

@@ -153,19 +153,23 @@ PointGrid::sortIntoCells (const std::vector<Eigen::Vector3f> &positions, int thr
 bool
 PointGrid::hasWithin (const Eigen::Vector3d &x, double radius) const
 {
-  bool has_one = false;
+  int within = 0;
   const Eigen::Vector3f center = x.cast<float> ();
   const auto limit = static_cast<float> (radius * radius);
-  visitNear (
-      x, radius,
-      [&] (std::size_t first, std::size_t last)
-      {
-        for (std::size_t i = first; i < last && !has_one; ++i)
-          has_one =
-              (Eigen::Vector3f (coordinates_[0][i], coordinates_[1][i], coordinates_[2][i]) - center).squaredNorm () <=
-              limit;
-      });
-  return has_one;
+  const float *const px = coordinates_[0].data (), *const py = coordinates_[1].data (),
+                     *const pz = coordinates_[2].data ();
+  visitNear (x, radius,
+             [&] (std::size_t first, std::size_t last)
+             {
+               if (within != 0)
+                 return;
+               for (std::size_t i = first; i < last; ++i) // no way out, so that several are looked at at once
+               {
+                 const float dx = px[i] - center[0], dy = py[i] - center[1], dz = pz[i] - center[2];
+                 within |= static_cast<int> (dx * dx + dy * dy + dz * dz <= limit);
+               }
+             });
+  return within != 0;
 }
 
 std::size_t
@@ -227,10 +231,10 @@ void
 PointGrid::nearestK (const Eigen::Vector3d &x, int k, std::vector<std::pair<float, int>> &found) const
 {
   constexpr double EVERYWHERE = 1e18; // its square is still a float
-  constexpr double PER_CELL = 16.0;   // points of a surface within a cell's side: see makePointGrid ()
-  constexpr double MARGIN = 1.15, FIRST_MARGIN = 1.3;
+  constexpr double PER_CELL = 16.0; // points of a surface on a square of a cell's side: see makePointGrid ()
+  constexpr double MARGIN = 1.2;
   const auto wanted = std::min (static_cast<std::size_t> (k), size ());
-  double reach = cell_ * FIRST_MARGIN * std::sqrt (static_cast<double> (k) / (M_PI * PER_CELL));
+  double reach = cell_ * MARGIN * std::sqrt (static_cast<double> (k) / (M_PI * PER_CELL));
   thread_local std::vector<int> indices; // kept, for there are many small queries
   thread_local std::vector<float> squared;
   for (withinRadius (x, reach, indices, squared); indices.size () < wanted && reach < EVERYWHERE;

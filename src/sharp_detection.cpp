@@ -147,22 +147,22 @@ private:
   visit (const Eigen::Vector3f &place, const Stretch &stretch, double &turns, double &of)
   {
     constexpr double NEAR = 1.5, FAR = 3.0; // spacings
-    search_.withinRadius (place, FAR * spacing_, found_, squared_);
+    search_.withinRadius (place, FAR * spacing_, found_.nodes, found_.squared);
     std::array<Eigen::Vector3f, 2> normals{Eigen::Vector3f::Zero (), Eigen::Vector3f::Zero ()};
     const auto side_of = [&] (std::size_t i)
     {
-      const int face = faces_[static_cast<std::size_t> (found_[i])];
+      const int face = faces_[static_cast<std::size_t> (found_.nodes[i])];
       return face == stretch.face ? 0 : face == stretch.other ? 1 : -1;
     };
-    const auto normal = [&] (std::size_t i) { return points_.normals[static_cast<std::size_t> (found_[i])]; };
-    const auto is_near = [&] (std::size_t i) { return squared_[i] < NEAR * NEAR * spacing_ * spacing_; };
-    for (std::size_t i = 0; i < found_.size (); ++i)
+    const auto normal = [&] (std::size_t i) { return points_.normals[static_cast<std::size_t> (found_.nodes[i])]; };
+    const auto is_near = [&] (std::size_t i) { return found_.squared[i] < NEAR * NEAR * spacing_ * spacing_; };
+    for (std::size_t i = 0; i < found_.nodes.size (); ++i)
       if (side_of (i) >= 0 && !is_near (i))
         normals[static_cast<std::size_t> (side_of (i))] += normal (i);
     if (normals[0].isZero () || normals[1].isZero ())
       return;
     const double turn = angleBetween (normals[0], normals[1]);
-    for (std::size_t i = 0; i < found_.size (); ++i)
+    for (std::size_t i = 0; i < found_.nodes.size (); ++i)
       if (side_of (i) >= 0 && is_near (i))
       {
         turns += angleBetween (normal (i), normals[static_cast<std::size_t> (side_of (i))]);
@@ -180,9 +180,22 @@ private:
   const NeighborSearch &search_;
   const std::vector<int> &faces_;
   double spacing_;
-  std::vector<int> found_;
-  std::vector<float> squared_;
+  FoundNodes found_;
 };
+
+std::vector<Stretch>
+withoutFolds (std::vector<Stretch> stretches, const FoldTest &test, int threads)
+{
+  std::vector<char> are_folds (stretches.size ());
+  parallelFor (
+      stretches.size (), threads, [&test] { return test; },
+      [&] (FoldTest &worker, std::size_t i) { are_folds[i] = worker.isFold (stretches[i]) ? 1 : 0; });
+  std::vector<Stretch> kept;
+  for (std::size_t i = 0; i < stretches.size (); ++i)
+    if (!are_folds[i])
+      kept.push_back (std::move (stretches[i]));
+  return kept;
+}
 
 /** \brief One separation of two faces for each cell of a grid. */
 std::vector<Separation>
@@ -240,11 +253,7 @@ gatherStretches (const OrientedPoints &points, const NeighborSearch &search, con
     stretch.places.emplace_back (separations[i].position.cast<double> () + points.origin);
     stretch.reach = std::max (stretch.reach, REACH * radii[i]);
   }
-  FoldTest test (points, search, found.faces, options.spacing);
-  stretches.erase (std::remove_if (stretches.begin (), stretches.end (),
-                                   [&] (const Stretch &stretch) { return test.isFold (stretch); }),
-                   stretches.end ());
-  return stretches;
+  return withoutFolds (std::move (stretches), FoldTest (points, search, found.faces, options.spacing), threads);
 }
 
 /** \brief Marks the nodes that fits near the stretches can reach: the others need no face. */

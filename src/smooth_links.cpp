@@ -77,11 +77,12 @@ private:
   linkNear (Worker &worker, std::size_t first, std::size_t last, std::vector<char> &is_suspect,
             NodeLinks::Lists &lists) const
   {
-    worker.near.gather (first, last, near_);
+    worker.near.gather (first, last, near_); // links end at far_, if that is less: others may be farther
     for (std::size_t place = first; place < last; ++place)
     {
       const int node = worker.near.nodeAt (place);
-      is_suspect[static_cast<std::size_t> (node)] = appendLinks (worker, node, near_, lists.nodes) ? 1 : 0;
+      is_suspect[static_cast<std::size_t> (node)] =
+          appendLinks (worker, node, std::min (near_, far_), lists.nodes) ? 1 : 0;
       lists.close ();
     }
   }
@@ -121,7 +122,7 @@ private:
     const std::array<float, 6> own{p[0], p[1], p[2], n[0], n[1], n[2]};
     bool has_others = false;
     const std::size_t count = lanes::bestEngine ().linkSmooth (
-        test_.numbers (), near.table (), near.size (), own.data (), static_cast<float> (reach * reach),
+        test_.limits (), near.table (), near.size (), own.data (), static_cast<float> (reach * reach),
         static_cast<float> (near_ * near_), worker.linked.data (), has_others);
     for (std::size_t l = 0; l < count; ++l)
       if (const int other = near.node (worker.linked[l]); other != node)

@@ -18,12 +18,12 @@ class SmoothnessTest
 public:
   explicit SmoothnessTest (const SegmentationOptions &options)
   {
-    numbers_.chord = static_cast<float> (options.chord);
-    numbers_.bend = BEND;
-    numbers_.far_bend = BRIDGE_BEND;
-    numbers_.cosine = static_cast<float> (std::cos (options.angle));
-    numbers_.far_cosine = static_cast<float> (std::cos (BRIDGE_ANGLE * options.angle));
-    numbers_.squared_reach = static_cast<float> (std::pow (options.link_reach * options.spacing, 2));
+    limits_.chord = static_cast<float> (options.chord);
+    limits_.bend = BEND;
+    limits_.far_bend = BRIDGE_BEND;
+    limits_.cosine = static_cast<float> (std::cos (options.angle));
+    limits_.far_cosine = static_cast<float> (std::cos (BRIDGE_ANGLE * options.angle));
+    limits_.squared_reach = static_cast<float> (std::pow (options.link_reach * options.spacing, 2));
   }
 
   /** \brief Whether two nodes fit to one smooth surface: similar normals, and across them no step.
@@ -32,22 +32,22 @@ public:
   bool
   areSmooth (const OrientedPoints &points, int i, int j, float squared) const
   {
-    return fit (points, i, j, squared, numbers_.cosine, numbers_.bend);
+    return fit (points, i, j, squared, limits_.cosine, limits_.bend);
   }
 
   /** \brief Whether to link two nodes. Those farther apart must agree better: they bridge gaps in narrow faces. */
   bool
   areLinked (const OrientedPoints &points, int i, int j, float squared) const
   {
-    return squared <= numbers_.squared_reach ? areSmooth (points, i, j, squared)
-                                             : fit (points, i, j, squared, numbers_.far_cosine, numbers_.far_bend);
+    return squared <= limits_.squared_reach ? areSmooth (points, i, j, squared)
+                                            : fit (points, i, j, squared, limits_.far_cosine, limits_.far_bend);
   }
 
-  /** \brief The same for lanes: Engine::linkSmooth. */
+  /** \brief What Engine::linkSmooth goes by, of which areLinked () is the definition. */
   const lanes::Smoothness &
-  numbers () const
+  limits () const
   {
-    return numbers_;
+    return limits_;
   }
 
 private:
@@ -60,10 +60,10 @@ private:
     const auto from = static_cast<std::size_t> (i), to = static_cast<std::size_t> (j);
     const Eigen::Vector3f &n = points.normals[from], &m = points.normals[to];
     const float step = 0.5f * std::abs ((points.positions[to] - points.positions[from]).dot (n + m));
-    return n.dot (m) >= least_cosine && (step <= numbers_.chord || step * step <= bend * bend * squared);
+    return n.dot (m) >= least_cosine && (step <= limits_.chord || step * step <= bend * bend * squared);
   }
 
-  lanes::Smoothness numbers_{};
+  lanes::Smoothness limits_{};
 };
 
 /** \brief Links nodes with the neighbours that fit to them.

@@ -255,11 +255,17 @@ TEST_F (BlockFieldTest, AgreesWithTheDefinitionInABallOfManySupports)
     }
 }
 
-/** \brief A box with the faces that are found on it, and the smoother field without. */
+/** \brief A box with the faces that are found on it; its points are denser where x is small. */
 std::shared_ptr<erkpa::ImplicitField>
 boxWithFaces (Order order)
 {
-  const auto points = shapes::points (shapes::box (6000, {0.5, 0.35, 0.25}));
+  const Vector3d half (0.5, 0.35, 0.25);
+  shapes::Samples samples = shapes::box (6000, half);
+  const shapes::Samples more = shapes::box (12000, half, 6);
+  for (std::size_t i = 0; i < more.size (); ++i)
+    if (more.positions[i][0] < 0.0)
+      samples.add (more.positions[i], more.normals[i]);
+  const auto points = shapes::points (samples);
   FieldOptions options = optionsOf (order, 20);
   EXPECT_TRUE (erkpa::findSharpSurfaces (*points, erkpa::PointLayout (*points, 0), erkpa::SharpOptions (), 0,
                                          options.sharp_surfaces)
@@ -307,7 +313,7 @@ TEST_F (BlockFieldTest, AgreesWithTheDefinitionWhereTheDensityOfThePointsJumps)
 /** \brief Around edges and corners values come from two and three faces, and walls are thickened. */
 TEST_F (BlockFieldTest, AgreesWithTheDefinitionWhereFacesMeet)
 {
-  for (const Order order : {Order::LINEAR, Order::SPHERICAL})
+  for (const Order order : {Order::LINEAR, Order::SPHERICAL, Order::QUADRATIC})
   {
     const auto field = boxWithFaces (order);
     const double spacing = field->spacing (), least_wall = 1.2 * spacing;

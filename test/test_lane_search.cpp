@@ -144,7 +144,7 @@ TEST (LaneLinks, LinksWhatTheSmoothnessTestDoesWithEveryInstructionSet)
       for (std::size_t c = 0; c < own.size (); ++c)
         own[c] = columns[c][static_cast<std::size_t> (node)];
       linked.resize (
-          engine[e]->linkSmooth (test.numbers (), table, COUNT, own.data (), MOST, CLOSE, linked.data (), has_others));
+          engine[e]->linkSmooth (test.limits (), table, COUNT, own.data (), MOST, CLOSE, linked.data (), has_others));
       EXPECT_EQ (linked, expected) << engine[e]->name;
       EXPECT_EQ (has_others, expects_others) << engine[e]->name;
       fitting += expected.size ();
@@ -153,38 +153,74 @@ TEST (LaneLinks, LinksWhatTheSmoothnessTestDoesWithEveryInstructionSet)
   EXPECT_LT (fitting, engines * COUNT * COUNT / 3) << "others do not";
 }
 
-TEST (SmoothLinks, LeadToAllNeighborsOnTheSameFaceAndToNoOthers)
+namespace
 {
-  const auto points = shapes::points (shapes::box (4000, {1.0, 0.6, 0.4}));
-  const erkpa::PointLayout layout (*points, 0);
-  const erkpa::SegmentationOptions options = segmentationFor (layout.spacing);
-  std::vector<char> is_suspect;
-  const erkpa::NodeLinks links = erkpa::linkNeighbors (*points, *layout.grid, options, 2, is_suspect);
+
+/** \brief Expects the links of a node to lead to all nodes that fit to it within \a sure, and to none that do not fit
+ * or are beyond \a most; and the node to be a suspect where others lie within the separation reach. */
+void
+expectLinks (const erkpa::OrientedPoints &points, const erkpa::SegmentationOptions &options,
+             const erkpa::NodeLinks::List &links, int node, bool is_suspect)
+{
+  constexpr double LESS = 0.9999, MORE = 1.0001;
+  const double most = options.bridge_reach * options.spacing, apart = options.separation_reach;
+  const double sure = is_suspect ? most : std::min (most, apart);
   const erkpa::SmoothnessTest test (options);
-  const double close = options.separation_reach, far = options.bridge_reach * options.spacing;
-  const auto count = static_cast<int> (points->size ());
+  std::vector<int> found (links.begin (), links.end ());
+  std::sort (found.begin (), found.end ());
+  int others = 0, perhaps = 0;
+  for (int j = 0; j < static_cast<int> (points.size ()); ++j)
+  {
+    if (j == node)
+      continue;
+    const float squared = squaredDistance (points, node, j);
+    const bool fits = test.areLinked (points, node, j, squared);
+    const bool is_found = std::binary_search (found.begin (), found.end (), j);
+    const auto distance = std::sqrt (static_cast<double> (squared));
+    EXPECT_FALSE (is_found && (!fits || distance > MORE * most)) << node << " and " << j;
+    EXPECT_FALSE (!is_found && fits && distance < LESS * sure) << node << " and " << j;
+    others += !fits && distance < LESS * apart ? 1 : 0;
+    perhaps += !fits && distance < MORE * apart ? 1 : 0;
+  }
+  EXPECT_TRUE (is_suspect ? perhaps > 0 : others == 0) << node;
+}
+
+/** \brief See linkNeighbors (); for any number of threads. */
+void
+expectLinksOfBox (const erkpa::SegmentationOptions &options, const erkpa::OrientedPoints &points,
+                  const erkpa::PointLayout &layout)
+{
+  std::vector<char> is_suspect, are_suspect;
+  const erkpa::NodeLinks links = erkpa::linkNeighbors (points, *layout.grid, options, 2, is_suspect);
+  const erkpa::NodeLinks same = erkpa::linkNeighbors (points, *layout.grid, options, 1, are_suspect);
+  EXPECT_EQ (is_suspect, are_suspect);
+  const auto count = static_cast<int> (points.size ());
   int suspects = 0;
   for (int i = 0; i < count; ++i)
   {
     const auto node = static_cast<std::size_t> (i);
-    std::vector<int> found (links[node].begin (), links[node].end ()), missing;
-    std::sort (found.begin (), found.end ());
-    bool has_others = false;
-    for (int j = 0; j < count; ++j)
-    {
-      const float squared = squaredDistance (*points, i, j);
-      const bool is_linked = j != i && test.areLinked (*points, i, j, squared);
-      const bool is_found = std::binary_search (found.begin (), found.end (), j);
-      const auto distance = std::sqrt (static_cast<double> (squared));
-      ASSERT_FALSE (is_found && (!is_linked || distance > 1.0001 * far)) << i << " and " << j;
-      if (is_linked && distance < 0.9999 * close && !is_found)
-        missing.push_back (j);
-      has_others = has_others || (j != i && !is_linked && distance < 0.9999 * close);
-    }
-    EXPECT_TRUE (missing.empty ()) << i;
-    EXPECT_EQ (is_suspect[node] != 0, has_others) << i;
+    expectLinks (points, options, links[node], i, is_suspect[node] != 0);
+    EXPECT_TRUE (std::equal (links[node].begin (), links[node].end (), same[node].begin (), same[node].end ()));
     suspects += is_suspect[node];
   }
   EXPECT_GT (suspects, count / 10) << "along the edges";
-  EXPECT_LT (suspects, count / 2);
+  EXPECT_LT (suspects, 9 * count / 10);
+}
+
+} // namespace
+
+TEST (SmoothLinks, LeadToAllNeighborsOnTheSameFaceAndToNoOthers)
+{
+  const auto points = shapes::points (shapes::box (4000, {1.0, 0.6, 0.4}));
+  const erkpa::PointLayout layout (*points, 0);
+  expectLinksOfBox (segmentationFor (layout.spacing), *points, layout);
+}
+
+TEST (SmoothLinks, AreNoLongerThanBridgesWhereNodesSeeEachOtherFartherOff)
+{
+  const auto points = shapes::points (shapes::box (4000, {1.0, 0.6, 0.4}));
+  const erkpa::PointLayout layout (*points, 0);
+  erkpa::SegmentationOptions options = segmentationFor (layout.spacing);
+  options.separation_reach = 1.3 * options.bridge_reach * options.spacing;
+  expectLinksOfBox (options, *points, layout);
 }

@@ -264,12 +264,13 @@ struct Engine
   /** \brief The sum of weight · |value| at the voters for each tree. */
   void (*measureTrees) (const Voters &voters, const FaceFits &fits, const Trees &trees, float *distances);
 
-  /** \brief The places of those nodes that fit to one.
-   * \param[in] node position and normal of the one
+  /** \brief The places of those nodes that fit to one: to itself as well, where it is among them.
+   * \param[in] nodes positions and normals of \a count nodes
+   * \param[in] node those of the one, x y z nx ny nz
    * \param[in] most,close squared distances
    * \param[out] linked places of those within \a most that fit; has room for all and MAX_WIDTH more
    * \param[out] has_others whether some within \a close do not fit
-   * \return how many fit
+   * \return how many are linked
    */
   std::size_t (*linkSmooth) (const Smoothness &smoothness, const Table &nodes, std::size_t count, const float *node,
                              float most, float close, std::uint32_t *linked, bool &has_others);
