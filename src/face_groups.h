@@ -60,8 +60,9 @@ public:
    * missed. */
   static constexpr double REACH = 1.5;
 
-  /** \brief Support radii: where all nodes within are of one face, no other face counts. */
-  static constexpr double CLOSE = 1.2;
+  /** \brief Support radii: where all nodes within are of one face, no other face counts. The rim, on which the k-th
+   * node lies, is well inside. */
+  static constexpr double CLOSE = 1.01;
 
   /** \brief Whether some gathered value points, at least one, are all of the same face. */
   bool
