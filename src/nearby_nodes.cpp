@@ -39,20 +39,7 @@ NearbyNodes::gather (std::size_t first, std::size_t last, double reach)
   const Eigen::Vector3f center = box.center ();
   const double exact = 0.5 * static_cast<double> (box.diagonal ().norm ()) + reach;
   const double all = exact + ROUNDING * (exact + static_cast<double> (center.norm ()));
-  std::size_t most = lanes::MAX_WIDTH;
-  stretches_.clear ();
-  grid_.visitNear (center.cast<double> (), all,
-                   [&] (std::size_t from, std::size_t to)
-                   {
-                     stretches_.push_back ({static_cast<std::uint32_t> (from), static_cast<std::uint32_t> (to)});
-                     most += to - from;
-                   });
-  places_.resize (std::max (places_.size (), most));
-  squared_.resize (places_.size ());
-  const lanes::Cloud cloud{grid_.coordinates (0).data (), grid_.coordinates (1).data (), grid_.coordinates (2).data ()};
-  count_ =
-      lanes::bestEngine ().search->findWithin (cloud, stretches_.data (), stretches_.size (), center.data (),
-                                               static_cast<float> (all * all), {places_.data (), squared_.data ()});
+  grid_.findWithin (center.cast<double> (), all, found_);
   copyColumns ();
 }
 
@@ -60,13 +47,13 @@ void
 NearbyNodes::copyColumns ()
 {
   for (std::vector<float> &column : columns_)
-    column.resize (std::max (column.size (), count_));
-  for (std::size_t i = 0; i < count_; ++i)
+    column.resize (std::max (column.size (), found_.count));
+  for (std::size_t i = 0; i < found_.count; ++i)
   {
     const Eigen::Vector3f &normal = points_.normals[static_cast<std::size_t> (node (i))];
     for (std::size_t a = 0; a < 3; ++a)
     {
-      columns_[a][i] = grid_.coordinates (static_cast<int> (a))[places_[i]];
+      columns_[a][i] = grid_.coordinates (static_cast<int> (a))[found_.places[i]];
       columns_[3 + a][i] = normal[static_cast<Eigen::Index> (a)];
     }
   }

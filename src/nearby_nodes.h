@@ -10,7 +10,6 @@
 
 #include <array>
 #include <cstddef>
-#include <cstdint>
 #include <vector>
 
 namespace erkpa
@@ -34,13 +33,13 @@ public:
   std::size_t
   size () const
   {
-    return count_;
+    return found_.count;
   }
 
   int
   node (std::size_t i) const
   {
-    return nodeAt (places_[i]);
+    return nodeAt (found_.places[i]);
   }
 
   /** \brief Their positions and normals. */
@@ -71,11 +70,8 @@ private:
 
   const OrientedPoints &points_;
   const PointGrid &grid_;
-  std::size_t count_ = 0;
-  std::vector<std::uint32_t> places_;
+  PointGrid::Places found_;
   std::array<std::vector<float>, lanes::Table::COLUMNS> columns_;
-  std::vector<lanes::Stretch> stretches_; // memory of a search, like the next
-  std::vector<float> squared_;
 };
 
 } // namespace erkpa

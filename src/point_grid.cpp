@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "point_grid.h"
 
-#include "lanes/lanes.h"
 #include "threads.h"
 
 #include <algorithm>
@@ -200,41 +199,46 @@ PointGrid::nearest (const Eigen::Vector3d &x) const
 }
 
 void
+PointGrid::findWithin (const Eigen::Vector3d &center, double radius, Places &found) const
+{
+  found.stretches.clear ();
+  std::size_t most = lanes::MAX_WIDTH;
+  visitNear (center, radius,
+             [&] (std::size_t first, std::size_t last)
+             {
+               found.stretches.push_back ({static_cast<std::uint32_t> (first), static_cast<std::uint32_t> (last)});
+               most += last - first;
+             });
+  found.places.resize (std::max (found.places.size (), most));
+  found.squared.resize (found.places.size ());
+  const lanes::Cloud cloud{coordinates_[0].data (), coordinates_[1].data (), coordinates_[2].data ()};
+  const Eigen::Vector3f middle = center.cast<float> ();
+  found.count = lanes::bestEngine ().search->findWithin (cloud, found.stretches.data (), found.stretches.size (),
+                                                         middle.data (), static_cast<float> (radius * radius),
+                                                         {found.places.data (), found.squared.data ()});
+}
+
+void
 PointGrid::withinRadius (const Eigen::Vector3d &x, double radius, std::vector<int> &indices,
                          std::vector<float> &squared_distances) const
 {
-  const Eigen::Vector3f center = x.cast<float> ();
-  const auto limit = static_cast<float> (radius * radius);
-  const lanes::Search &search = *lanes::bestEngine ().search;
-  const lanes::Cloud cloud{coordinates_[0].data (), coordinates_[1].data (), coordinates_[2].data ()};
-  thread_local std::vector<lanes::Stretch> stretches; // kept, for there are many small queries
-  stretches.clear ();
-  std::size_t most = lanes::MAX_WIDTH;
-  visitNear (x, radius,
-             [&] (std::size_t first, std::size_t last)
-             {
-               stretches.push_back ({static_cast<std::uint32_t> (first), static_cast<std::uint32_t> (last)});
-               most += last - first;
-             });
-  indices.resize (std::max (indices.size (), most));
-  squared_distances.resize (std::max (squared_distances.size (), most));
-  auto *const places = reinterpret_cast<std::uint32_t *> (indices.data ()); // of the same layout
-  const std::size_t kept = search.findWithin (cloud, stretches.data (), stretches.size (), center.data (), limit,
-                                              {places, squared_distances.data ()});
-  indices.resize (kept);
-  squared_distances.resize (kept);
-  for (int &place : indices)
-    place = static_cast<int> (index_[static_cast<std::size_t> (place)]);
+  thread_local Places found; // kept, for there are many small queries
+  findWithin (x, radius, found);
+  indices.clear ();
+  for (std::size_t i = 0; i < found.count; ++i)
+    indices.push_back (static_cast<int> (index_[found.places[i]]));
+  squared_distances.assign (found.squared.begin (), found.squared.begin () + static_cast<std::ptrdiff_t> (found.count));
 }
 
 void
 PointGrid::nearestK (const Eigen::Vector3d &x, int k, std::vector<std::pair<float, int>> &found) const
 {
   constexpr double EVERYWHERE = 1e18; // its square is still a float
-  constexpr double PER_CELL = 16.0; // points of a surface on a square of a cell's side: see makePointGrid ()
-  constexpr double MARGIN = 1.2;
+  // Of a cell's side, times √k: a ball of half the points, about, tells how dense they are here. Two searches in small
+  // balls were measured to be quicker than one in a ball that is large enough nearly everywhere.
+  constexpr double FIRST = 0.17, MARGIN = 1.2;
   const auto wanted = std::min (static_cast<std::size_t> (k), size ());
-  double reach = cell_ * MARGIN * std::sqrt (static_cast<double> (k) / (M_PI * PER_CELL));
+  double reach = FIRST * cell_ * std::sqrt (static_cast<double> (k));
   thread_local std::vector<int> indices; // kept, for there are many small queries
   thread_local std::vector<float> squared;
   for (withinRadius (x, reach, indices, squared); indices.size () < wanted && reach < EVERYWHERE;

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include "lanes/lanes.h"
+
 #include <erkpa/large_pages.h>
 #include <erkpa/neighbor_search.h>
 
@@ -87,6 +89,19 @@ public:
   /** \brief The \a k points nearest to \a x with their squared distances, in no order; fewer where there are fewer. */
   void
   nearestK (const Eigen::Vector3d &x, int k, std::vector<std::pair<float, int>> &found) const;
+
+  /** \brief What findWithin () finds, and needs for it; kept from query to query. */
+  struct Places
+  {
+    std::size_t count = 0;
+    std::vector<std::uint32_t> places; ///< the first \a count of them
+    std::vector<float> squared;        ///< their squared distances from the center
+    std::vector<lanes::Stretch> stretches;
+  };
+
+  /** \brief The places of all points within \a radius of \a center, in ascending order. */
+  void
+  findWithin (const Eigen::Vector3d &center, double radius, Places &found) const;
 
   /** \brief All points within \a radius of \a x, in the order of the grid. */
   void

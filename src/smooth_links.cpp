@@ -135,15 +135,16 @@ private:
   markFar (const std::vector<char> &is_suspect, const NodeLinks &links) const
   {
     std::vector<std::atomic<char>> marks (points_.size ());
-    constexpr std::size_t STRETCH = 256; // places
-    parallelFor ((points_.size () + STRETCH - 1) / STRETCH, threads_, [this] { return Worker (*this); },
-                 [&] (Worker &worker, std::size_t part)
-                 {
-                   const std::size_t first = part * STRETCH, last = std::min (points_.size (), first + STRETCH);
-                   visitRuns (worker, first, last,
-                              [&] (std::size_t from, std::size_t to)
-                              { mark (worker, from, to, is_suspect, links, marks); });
-                 });
+    constexpr std::size_t STRETCH = 1024; // places
+    parallelRanges (
+        points_.size (), threads_,
+        [&] (std::size_t first, std::size_t last)
+        {
+          Worker worker (*this);
+          visitRuns (worker, first, last,
+                     [&] (std::size_t from, std::size_t to) { mark (worker, from, to, is_suspect, links, marks); });
+        },
+        STRETCH);
     return {marks.begin (), marks.end ()};
   }
 
