@@ -12,8 +12,9 @@
 namespace erkpa
 {
 
-GridField::GridField (const ImplicitField &field, const PolygonizerOptions &options, double voxel_size)
-    : local (field), block (field)
+GridField::GridField (const ImplicitField &field, const PolygonizerOptions &options, double voxel_size,
+                      const MomentLattice *lattice)
+    : local (field), block (field, lanes::bestEngine (), lattice)
 {
   constexpr double LEAST_WALL = 1.2; // voxels
   local.thicken (local.unwarpedLength (LEAST_WALL * voxel_size));

@@ -24,7 +24,9 @@ struct WantedNode
 /** \brief The field as one thread asks it for the nodes of a grid. */
 struct GridField
 {
-  GridField (const ImplicitField &field, const PolygonizerOptions &options, double voxel_size);
+  /** \param[in] lattice see BlockField */
+  GridField (const ImplicitField &field, const PolygonizerOptions &options, double voxel_size,
+             const MomentLattice *lattice);
 
   LocalField local; ///< walls so thin that both sides cross the same edge of the grid are thickened
   BlockField block; ///< the quick double, for points it can do; the same
@@ -48,9 +50,11 @@ class BlockEvaluator
 {
 public:
   /** \param[in] foresees whether nodes that were not asked for yet are evaluated, too, where it looks as if they will
+   * \param[in] sketches whether cubes of blocks are sketched: where canSketch ()
    */
-  BlockEvaluator (const ImplicitField &field, const PolygonizerOptions &options, SparseGrid &grid, bool foresees)
-      : options_ (options), grid_ (grid), foresees_ (foresees), sketches_ (canSketch (field, grid.voxelSize ())),
+  BlockEvaluator (const ImplicitField &field, const PolygonizerOptions &options, SparseGrid &grid, bool foresees,
+                  bool sketches)
+      : options_ (options), grid_ (grid), foresees_ (foresees), sketches_ (sketches),
         parts_ (partsOfBlock (field.typicalRadius () / grid.voxelSize ()))
   {
   }

@@ -36,13 +36,15 @@ BlockField::canEvaluate (const ImplicitField &field)
          field.supportSize ().kind () != SupportSize::Kind::PER_NODE && field.supportSize ().typical () > 0.0;
 }
 
-BlockField::BlockField (const ImplicitField &field, const lanes::Engine &engine)
+BlockField::BlockField (const ImplicitField &field, const lanes::Engine &engine, const MomentLattice *lattice)
     : field_ (field), can_evaluate_ (canEvaluate (field)), engine_ (engine), unit_ (field.supportSize ().typical ()),
       inverse_unit_ (1.0 / unit_), settings_ (laneSettingsOf (field)), nodes_ (field, engine, unit_),
       faces_ (field, engine, settings_, unit_), enrichment_ (field, unit_),
       plain_ (static_cast<std::size_t> (field.points ().channels), termsOf (settings_.basis),
               field.faces () != nullptr),
-      enriched_ (static_cast<std::size_t> (field.points ().channels), 0, field.faces () != nullptr)
+      enriched_ (static_cast<std::size_t> (field.points ().channels), 0, field.faces () != nullptr),
+      interpolated_ (static_cast<std::size_t> (field.points ().channels), termsOf (settings_.basis), false),
+      lattice_ (lattice, engine, static_cast<std::size_t> (field.points ().channels))
 {
   setReach (1.0, 0.0, 0.0);
 }
@@ -69,11 +71,20 @@ BlockField::gather (const Eigen::Vector3d &center, double extent, bool on_surfac
   has_separations_ = faces_.gather (center_, all);
   const bool by_nearest = field_.supportSize ().kind () == SupportSize::Kind::NEAREST;
   enrichment_.gather (center_, (by_nearest ? center_radius_ + 2.0 * all : reach_) + field_.largestOffset ());
+  has_nodes_ = by_nearest;
   if (by_nearest)
     nodes_.addValues ();
-  else
-    nodes_.copyWithin (reach_);
   return true;
+}
+
+void
+BlockField::copyNodes ()
+{
+  if (has_nodes_)
+    return;
+  nodes_.lookAround (center_, reach_);
+  nodes_.copyWithin (reach_);
+  has_nodes_ = true;
 }
 
 /** \brief See Support::gather (). */
@@ -86,7 +97,6 @@ BlockField::findReach (const Eigen::Vector3d &center, double extent, bool on_sur
     center_radius_ = size.radiusAt (center);
     const double stretch = size.kind () == SupportSize::Kind::FUNCTION ? 2.0 : 1.0;
     reach_ = std::max (center_radius_, 0.0) + stretch * extent;
-    nodes_.lookAround (center, reach_);
     return true;
   }
   constexpr double FARTHEST = 1e18; // its square is still a float
@@ -130,6 +140,7 @@ BlockField::clearPoints ()
 {
   places_.clear ();
   plain_.clear ();
+  interpolated_.clear ();
   at_faces_.clear ();
   enriched_.clear ();
   enriched_at_.clear ();
@@ -148,14 +159,20 @@ BlockField::addPoint (const Eigen::Vector3d &x)
   {
     if (is_at_faces || !enrichment_.canEvaluateAt (x, reach))
       return false;
-    places_.push_back ({true, static_cast<std::uint32_t> (enriched_.size ()), -1});
+    places_.push_back ({Kind::ENRICHED, static_cast<std::uint32_t> (enriched_.size ()), -1});
     enriched_.add (scaled);
     enriched_at_.push_back (x);
     enriched_reach_ = std::max (enriched_reach_, reach);
     return true;
   }
+  if (lattice_.covers (x))
+  {
+    places_.push_back ({Kind::INTERPOLATED, static_cast<std::uint32_t> (interpolated_.size ()), -1});
+    interpolated_.add (scaled);
+    return true;
+  }
   const auto index = static_cast<std::uint32_t> (plain_.size ());
-  places_.push_back ({false, index, is_at_faces ? static_cast<int> (at_faces_.size ()) : -1});
+  places_.push_back ({Kind::PLAIN, index, is_at_faces ? static_cast<int> (at_faces_.size ()) : -1});
   if (is_at_faces)
     at_faces_.push_back (index);
   plain_.add (scaled);
@@ -190,6 +207,12 @@ BlockField::evaluate (bool gradients)
 {
   settings_.gradients = gradients;
   evaluations_ += size ();
+  if (interpolated_.size () > 0)
+  {
+    if (!lattice_.evaluate (settings_, center_, unit_, interpolated_))
+      interpolated_.leaveOpen ();
+    takeUnsettled ();
+  }
   run ();
   if (plain_.hasShort () || enriched_.hasShort ())
   {
@@ -201,9 +224,28 @@ BlockField::evaluate (bool gradients)
 }
 
 void
+BlockField::takeUnsettled ()
+{
+  for (Place &place : places_)
+    if (place.kind == Kind::INTERPOLATED)
+    {
+      if (interpolated_.states[place.index] == lanes::State::DEFINED)
+      {
+        support_nodes_ += interpolated_.supports[place.index];
+        continue;
+      }
+      const Eigen::Vector3f x = interpolated_.position (place.index);
+      place = {Kind::PLAIN, static_cast<std::uint32_t> (plain_.size ()), -1};
+      plain_.add (x);
+    }
+}
+
+void
 BlockField::run ()
 {
-  if (settings_.gradients && size () > 0)
+  if (plain_.size () + enriched_.size () > 0)
+    copyNodes ();
+  if (settings_.gradients && plain_.size () + enriched_.size () > 0)
     nodes_.copyAttributes ();
   if (plain_.size () > 0)
   {
@@ -269,20 +311,23 @@ BlockField::addSketchPoint (const Eigen::Vector3d &x)
 {
   if (settings_.constraint == lanes::Constraint::FUNCTIONAL || settings_.basis == lanes::Basis::CONSTANT)
     return false;
-  places_.push_back ({false, static_cast<std::uint32_t> (plain_.size ()), -1});
-  plain_.add (((x - center_) * inverse_unit_).cast<float> ());
+  const bool is_covered = lattice_.covers (x);
+  BlockPoints &points = is_covered ? interpolated_ : plain_;
+  places_.push_back ({is_covered ? Kind::INTERPOLATED : Kind::PLAIN, static_cast<std::uint32_t> (points.size ()), -1});
+  points.add (((x - center_) * inverse_unit_).cast<float> ());
   return true;
 }
 
 bool
 BlockField::sketch (std::size_t point, FieldSketch &sketch) const
 {
+  const BlockPoints &points = at (point);
   const std::size_t i = placeOf (point);
-  if (plain_.states[i] != lanes::State::DEFINED)
+  if (points.states[i] != lanes::State::DEFINED)
     return false;
-  const auto coefficient = [&] (std::size_t j) { return unit_ * static_cast<double> (plain_.coefficient (i, j)); };
-  const double radius = unit_ * static_cast<double> (plain_.radii[i]);
-  sketch.x = center_ + unit_ * plain_.position (i).cast<double> ();
+  const auto coefficient = [&] (std::size_t j) { return unit_ * static_cast<double> (points.coefficient (i, j)); };
+  const double radius = unit_ * static_cast<double> (points.radii[i]);
+  sketch.x = center_ + unit_ * points.position (i).cast<double> ();
   sketch.value = coefficient (0);
   sketch.slope = Eigen::Vector3d (coefficient (1), coefficient (2), coefficient (3)) / radius;
   sketch.bend = settings_.basis == lanes::Basis::SPHERICAL ? coefficient (4) / (radius * radius) : 0.0;
@@ -292,7 +337,8 @@ BlockField::sketch (std::size_t point, FieldSketch &sketch) const
 std::uint64_t
 BlockField::sideKey (std::size_t point) const
 {
-  return sideKeyOf (face (point), places_[point].is_enriched ? enrichment_.sideKey (enriched_, placeOf (point)) : 0);
+  return sideKeyOf (face (point),
+                    places_[point].kind == Kind::ENRICHED ? enrichment_.sideKey (enriched_, placeOf (point)) : 0);
 }
 
 double

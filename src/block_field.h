@@ -3,6 +3,7 @@
 
 #include "block_enrichment.h"
 #include "block_faces.h"
+#include "block_lattice.h"
 #include "block_nodes.h"
 #include "block_points.h"
 #include "field_sketch.h"
@@ -25,7 +26,9 @@ namespace erkpa
 class BlockField
 {
 public:
-  explicit BlockField (const ImplicitField &field, const lanes::Engine &engine = lanes::bestEngine ());
+  /** \param[in] lattice moments to interpolate where they cover a point; null: sums over the nodes everywhere */
+  explicit BlockField (const ImplicitField &field, const lanes::Engine &engine = lanes::bestEngine (),
+                       const MomentLattice *lattice = nullptr);
 
   /** \brief Whether fields with such settings are evaluated here at all. */
   static bool
@@ -166,10 +169,17 @@ public:
   }
 
 private:
+  enum class Kind : std::uint8_t
+  {
+    PLAIN,
+    ENRICHED,
+    INTERPOLATED ///< from a lattice
+  };
+
   /** \brief Where a point is kept, and as which. */
   struct Place
   {
-    bool is_enriched;
+    Kind kind;
     std::uint32_t index;
     int at_faces; ///< place among the points where faces are kept apart; -1 elsewhere
   };
@@ -188,8 +198,16 @@ private:
   void
   widen ();
 
+  /** \brief Copy the nodes of the ball, unless they are there. */
+  void
+  copyNodes ();
+
   void
   run ();
+
+  /** \brief Take those points of the lattice that want sums over the nodes to the plain ones. */
+  void
+  takeUnsettled ();
 
   void
   finishPlain ();
@@ -203,7 +221,8 @@ private:
   const BlockPoints &
   at (std::size_t point) const
   {
-    return places_[point].is_enriched ? enriched_ : plain_;
+    const Kind kind = places_[point].kind;
+    return kind == Kind::PLAIN ? plain_ : kind == Kind::ENRICHED ? enriched_ : interpolated_;
   }
 
   std::size_t
@@ -221,7 +240,9 @@ private:
   BlockFaces faces_;
   BlockEnrichment enrichment_;
   std::vector<Place> places_; // of the points
-  BlockPoints plain_, enriched_;
+  BlockPoints plain_, enriched_, interpolated_;
+  BlockLattice lattice_;
+  bool has_nodes_ = false;
   bool has_separations_ = false;
   std::vector<std::uint32_t> at_faces_;      // of plain_
   std::vector<Eigen::Vector3d> enriched_at_; // local frame

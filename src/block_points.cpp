@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "block_points.h"
 
-#include <algorithm>
-#include <memory>
+#include <cstddef>
 
 namespace erkpa
 {
@@ -52,33 +51,23 @@ BlockPoints::pad ()
   repeat_last (guesses_);
 }
 
-/** \brief The first row at the start of a cache line: others would lie on two of them. */
-float *
-BlockPoints::alignedRows ()
+lanes::Points
+BlockPoints::points (bool growths) const
 {
-  void *start = rows_.data ();
-  std::size_t space = rows_.size () * sizeof (float);
-  return static_cast<float *> (
-      std::align (lanes::MAX_WIDTH * sizeof (float), space - lanes::MAX_WIDTH * sizeof (float), start, space));
+  const auto growth = [&] (std::size_t a) { return growths ? growths_[a].data () : nullptr; };
+  return {count_,
+          points_[0].data (),
+          points_[1].data (),
+          points_[2].data (),
+          bounds_.data (),
+          guesses_.data (),
+          {growth (0), growth (1), growth (2)},
+          stride ()};
 }
 
-void
-BlockPoints::run (const lanes::Engine &engine, const lanes::Settings &settings, const lanes::Nodes &nodes, bool growths,
-                  const lanes::SharpSurfaces *sharp)
+lanes::Samples
+BlockPoints::samples ()
 {
-  pad ();
-  list_.resize (std::max (list_.size (), nodes.count + lanes::MAX_WIDTH));
-  near_.resize (lanes::Scratch::COLUMNS * list_.size ());
-  rows_.resize (std::max (rows_.size (), lanes::MAX_WIDTH * (nodes.count + 2)));
-  const auto growth = [&] (std::size_t a) { return growths ? growths_[a].data () : nullptr; };
-  const lanes::Points points{count_,
-                             points_[0].data (),
-                             points_[1].data (),
-                             points_[2].data (),
-                             bounds_.data (),
-                             guesses_.data (),
-                             {growth (0), growth (1), growth (2)},
-                             stride ()};
   lanes::Samples samples{};
   samples.value = values.data ();
   samples.radius = radii.data ();
@@ -97,8 +86,23 @@ BlockPoints::run (const lanes::Engine &engine, const lanes::Settings &settings, 
   }
   samples.border_offset = border_offsets.data ();
   samples.attributes = attributes_.data ();
-  engine.evaluate (settings, nodes, points, sharp != nullptr ? *sharp : lanes::SharpSurfaces{},
-                   {list_.data (), near_.data (), alignedRows ()}, samples);
+  return samples;
+}
+
+void
+BlockPoints::run (const lanes::Engine &engine, const lanes::Settings &settings, const lanes::Nodes &nodes, bool growths,
+                  const lanes::SharpSurfaces *sharp)
+{
+  pad ();
+  engine.evaluate (settings, nodes, points (growths), sharp != nullptr ? *sharp : lanes::SharpSurfaces{},
+                   memory_.scratchFor (nodes.count), samples ());
+}
+
+void
+BlockPoints::interpolate (const lanes::Engine &engine, const lanes::Settings &settings, const lanes::Lattice &lattice)
+{
+  pad ();
+  engine.lattice->interpolate (settings, lattice, points (false), samples ());
 }
 
 } // namespace erkpa

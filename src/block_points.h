@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include "lane_memory.h"
 #include "lanes/lanes.h"
 
 #include <Eigen/Core>
@@ -77,6 +78,17 @@ public:
   run (const lanes::Engine &engine, const lanes::Settings &settings, const lanes::Nodes &nodes, bool growths,
        const lanes::SharpSurfaces *sharp = nullptr);
 
+  /** \brief The same from moments that are interpolated between the points of a lattice. */
+  void
+  interpolate (const lanes::Engine &engine, const lanes::Settings &settings, const lanes::Lattice &lattice);
+
+  /** \brief Let all points be open: State::UNSETTLED. */
+  void
+  leaveOpen ()
+  {
+    std::fill_n (states.begin (), count_, lanes::State::UNSETTLED);
+  }
+
   // What was found; see lanes::Samples. Points of faces have theirs written here afterwards.
   std::vector<float> values, radii, border_offsets, nearest_distances, asides;
   std::vector<std::uint8_t> in_reach;
@@ -114,8 +126,11 @@ private:
   void
   resize (std::size_t size);
 
-  float *
-  alignedRows ();
+  lanes::Points
+  points (bool growths) const;
+
+  lanes::Samples
+  samples ();
 
   /** \brief The last vector is filled up with the last point. */
   void
@@ -125,8 +140,7 @@ private:
   bool wants_nearest_;
   std::array<std::vector<float>, 3> points_, growths_;
   std::vector<float> bounds_, guesses_, attributes_, coefficients_;
-  std::vector<std::uint32_t> list_;
-  std::vector<float> near_, rows_;
+  LaneMemory memory_;
 };
 
 } // namespace erkpa

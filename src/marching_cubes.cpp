@@ -7,6 +7,7 @@
 #include "crease_edges.h"
 #include "crease_lines.h"
 #include "feature_loops.h"
+#include "moment_lattice.h"
 #include "parallel_collect.h"
 #include "sliver_removal.h"
 #include "sparse_grid.h"
@@ -23,6 +24,7 @@
 #include <atomic>
 #include <cmath>
 #include <cstdint>
+#include <memory>
 #include <string>
 #include <utility>
 
@@ -57,6 +59,8 @@ checkOptions (const PolygonizerOptions &options)
     return bad ("the grid resolution must be positive, or 0 for automatic");
   if (!std::isfinite (options.iso_level))
     return bad ("the iso level must be finite");
+  if (!(options.moment_tolerance >= 0.0) || !(options.moment_tolerance < 1.0))
+    return bad ("the tolerance of interpolated moments must be at least 0 (none are) and below 1");
   if (options.threads < 0)
     return bad ("the number of threads must be positive, or 0 for all processors");
   return {};
@@ -206,9 +210,9 @@ meshCreases (const ImplicitField &field, const PolygonizerOptions &options, cons
  * \return the triangles; none where no data support a piece of surface
  */
 LargeVector<Triangle>
-meshSurface (const ImplicitField &field, const PolygonizerOptions &options, const SparseGrid &grid,
-             const SurfaceTracker &tracker, SurfaceVertices &vertices, std::vector<VertexPair> &creases,
-             PolygonizerReport &report)
+meshSurface (const ImplicitField &field, const PolygonizerOptions &options, const MomentLattice *lattice,
+             const SparseGrid &grid, const SurfaceTracker &tracker, SurfaceVertices &vertices,
+             std::vector<VertexPair> &creases, PolygonizerReport &report)
 {
   const StageClock clock (report.seconds_triangles);
   const double voxel = report.voxel_size;
@@ -216,13 +220,13 @@ meshSurface (const ImplicitField &field, const PolygonizerOptions &options, cons
   const std::size_t at_middles = vertices.positions.size ();
   LargeVector<Triangle> triangles = std::move (cell_mesh.triangles);
   meshCentered (cell_mesh.centered_loops, triangles, vertices);
-  projectVertices (field, options, at_middles, 0.3 * voxel, vertices, report);
+  projectVertices (field, options, at_middles, 0.3 * voxel, lattice, vertices, report);
   creases =
       meshCreases (field, options, cell_mesh.mixed_loops, !cell_mesh.border.empty (), triangles, vertices, report);
   report.seconds_triangles -= report.seconds_creases; // which passed on both clocks
   const std::size_t in_cells = vertices.positions.size ();
   trimBorder (options.border_offset, options.threads, cell_mesh.border, triangles, vertices);
-  projectVertices (field, options, in_cells, 0.1 * voxel, vertices, report);
+  projectVertices (field, options, in_cells, 0.1 * voxel, lattice, vertices, report);
   const int min_points = std::min (options.min_component_points, static_cast<int> (field.points ().size ()) / 2);
   report.dropped_components =
       dropUnsupported (grid, tracker, min_points, options.threads, vertices.positions.size (), triangles);
@@ -248,15 +252,17 @@ meshField (const ImplicitField &field, const PolygonizerOptions &options, Surfac
   const double voxel = report.voxel_size;
   // Off the middle of the cloud by odd shares of a cell: faces of boxes then do not fall on grid nodes.
   SparseGrid grid (-voxel * Eigen::Vector3d (0.371, 0.437, 0.293), voxel);
-  SurfaceTracker tracker (field, options, grid, report, partOf (progress, 0.0, 0.5));
+  const std::unique_ptr<MomentLattice> lattice = MomentLattice::make (field, options, voxel);
+  SurfaceTracker tracker (field, options, lattice.get (), grid, report, partOf (progress, 0.0, 0.5));
   const Outcome outcome = followSurface (tracker, grid, report);
+  report.moment_sums = lattice != nullptr ? lattice->size () : 0;
   if (!outcome.ok ())
     return outcome;
   {
     const StageClock clock (report.seconds_vertices);
-    placeVertices (field, options, grid, vertices, report, partOf (progress, 0.5, 0.5));
+    placeVertices (field, options, lattice.get (), grid, vertices, report, partOf (progress, 0.5, 0.5));
   }
-  triangles = meshSurface (field, options, grid, tracker, vertices, creases, report);
+  triangles = meshSurface (field, options, lattice.get (), grid, tracker, vertices, creases, report);
   return triangles.empty () ? noSurface (field, voxel, report.dropped_components) : Outcome ();
 }
 

@@ -25,7 +25,7 @@ public:
   }
 
   std::vector<char>
-  run (const ImplicitField &field, PolygonizerReport &report)
+  run (const ImplicitField &field, const MomentLattice *lattice, PolygonizerReport &report)
   {
     constexpr int STEPS = 4;
     for (int step = 0; step < STEPS && !waiting_.empty (); ++step)
@@ -33,7 +33,7 @@ public:
       const std::vector<PointGroup> groups = groupPoints (
           waiting_.size (), voxel_, [this] (std::size_t w) -> const Eigen::Vector3d & { return points_[waiting_[w]]; });
       parallelFor (
-          groups.size (), options_.threads, [&] { return GridField (field, options_, voxel_); },
+          groups.size (), options_.threads, [&] { return GridField (field, options_, voxel_, lattice); },
           [&] (GridField &worker, std::size_t g) { stepTogether (worker, groups[g]); },
           [&report] (const GridField &worker) { worker.addTo (report); });
       std::vector<std::size_t> left;
@@ -119,10 +119,10 @@ private:
 } // namespace
 
 std::vector<char>
-findFeet (const ImplicitField &field, const PolygonizerOptions &options, double voxel,
+findFeet (const ImplicitField &field, const PolygonizerOptions &options, double voxel, const MomentLattice *lattice,
           std::vector<Eigen::Vector3d> &points, PolygonizerReport &report)
 {
-  return FootFinder (options, voxel, points).run (field, report);
+  return FootFinder (options, voxel, points).run (field, lattice, report);
 }
 
 } // namespace erkpa

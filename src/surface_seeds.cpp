@@ -177,7 +177,7 @@ SurfaceTracker::seedFromProjections ()
   feet.reserve (away.size ());
   for (const std::uint32_t i : away)
     feet.push_back (positions[i].cast<double> ());
-  const std::vector<char> has_foot = findFeet (field_, options_, grid_.voxelSize (), feet, report_);
+  const std::vector<char> has_foot = findFeet (field_, options_, grid_.voxelSize (), lattice_, feet, report_);
   for (std::size_t i = 0; i < away.size (); ++i)
     if (has_foot[i])
     {

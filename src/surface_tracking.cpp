@@ -4,6 +4,8 @@
 #include "block_evaluator.h"
 #include "block_groups.h"
 #include "grid_bits.h"
+#include "moment_lattice.h"
+#include "parallel_collect.h"
 #include "threads.h"
 
 #include <algorithm>
@@ -39,9 +41,10 @@ everyOf (const std::array<std::uint64_t, 8> &corners)
 
 } // namespace
 
-SurfaceTracker::SurfaceTracker (const ImplicitField &field, const PolygonizerOptions &options, SparseGrid &grid,
-                                PolygonizerReport &report, ProgressCallback progress)
-    : field_ (field), options_ (options), grid_ (grid), report_ (report), progress_ (std::move (progress))
+SurfaceTracker::SurfaceTracker (const ImplicitField &field, const PolygonizerOptions &options, MomentLattice *lattice,
+                                SparseGrid &grid, PolygonizerReport &report, ProgressCallback progress)
+    : field_ (field), options_ (options), lattice_ (lattice), grid_ (grid), report_ (report),
+      progress_ (std::move (progress))
 {
 }
 
@@ -153,16 +156,39 @@ SurfaceTracker::requestCubes ()
 }
 
 void
+SurfaceTracker::coverRequested ()
+{
+  using Cells = std::vector<MomentLattice::Cells>;
+  constexpr std::size_t STRETCH = 1024;
+  lattice_->cover (parallelCollect<Cells> (
+      requested_blocks_.size (), options_.threads,
+      [this] (std::size_t first, std::size_t last, Cells &cells)
+      {
+        for (std::size_t i = first; i < last; ++i)
+        {
+          const GridBlock &block = grid_.block (requested_blocks_[i]);
+          for (std::uint64_t left = block.needed; left != 0; left &= left - 1)
+            lattice_->listCell (grid_.position (SparseGrid::pointAt (block, __builtin_ctzll (left))), cells);
+        }
+      },
+      STRETCH));
+}
+
+void
 SurfaceTracker::evaluateRequested ()
 {
   // The surface passes some 16 cells of a block. Where the nodes lie in few of them, the first front asks for little.
   constexpr std::size_t FEW = 8;
   if (evaluated_blocks_ == 0)
-    foresees_ = nodeCount () < FEW * requested_blocks_.size ();
-  if (BlockEvaluator::canSketch (field_, grid_.voxelSize ()))
+    foresees_ = lattice_ == nullptr && nodeCount () < FEW * requested_blocks_.size ();
+  // A sketch spares sums over the nodes. What is interpolated has none.
+  const bool sketches = lattice_ == nullptr && BlockEvaluator::canSketch (field_, grid_.voxelSize ());
+  if (sketches)
     requestCubes ();
+  if (lattice_ != nullptr)
+    coverRequested ();
   const std::size_t block_count = requested_blocks_.size ();
-  const BlockEvaluator evaluator (field_, options_, grid_, foresees_);
+  const BlockEvaluator evaluator (field_, options_, grid_, foresees_, sketches);
   const BlockGroups groups (grid_, std::move (requested_blocks_), field_.typicalRadius () / grid_.voxelSize ());
   // In slices, so that progress shows during the first front, which is the largest by far.
   constexpr std::size_t SLICE = 8192;
@@ -170,7 +196,7 @@ SurfaceTracker::evaluateRequested ()
   {
     const std::size_t last = std::min (first + SLICE, groups.size ());
     parallelFor (
-        last - first, options_.threads, [this] { return GridField (field_, options_, grid_.voxelSize ()); },
+        last - first, options_.threads, [this] { return GridField (field_, options_, grid_.voxelSize (), lattice_); },
         [&] (GridField &worker, std::size_t i)
         { evaluator.evaluate (worker, groups.begin (first + i), groups.end (first + i)); },
         [this] (const GridField &worker) { worker.addTo (report_); });

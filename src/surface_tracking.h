@@ -16,6 +16,8 @@
 namespace erkpa
 {
 
+class MomentLattice;
+
 /** \brief Finds the cells that the surface crosses by following it from the cells of the nodes and those beside them.
  *
  * Works in fronts: the corner values a front needs are found together, block by block (BlockEvaluator), each once; then
@@ -25,8 +27,9 @@ namespace erkpa
 class SurfaceTracker
 {
 public:
-  SurfaceTracker (const ImplicitField &field, const PolygonizerOptions &options, SparseGrid &grid,
-                  PolygonizerReport &report, ProgressCallback progress);
+  /** \param[in,out] lattice see BlockField; covers what is evaluated. Null: none */
+  SurfaceTracker (const ImplicitField &field, const PolygonizerOptions &options, MomentLattice *lattice,
+                  SparseGrid &grid, PolygonizerReport &report, ProgressCallback progress);
 
   /** \brief Mark the active cells of the grid.
    * \return Status::GRID_TOO_FINE where the surface passes more cells than fit in memory
@@ -68,6 +71,10 @@ private:
 
   void
   requestCubes ();
+
+  /** \brief Let the lattice cover the requested nodes. */
+  void
+  coverRequested ();
 
   void
   evaluateRequested ();
@@ -111,6 +118,7 @@ private:
 
   const ImplicitField &field_;
   const PolygonizerOptions &options_;
+  MomentLattice *lattice_;
   SparseGrid &grid_;
   PolygonizerReport &report_;
   ProgressCallback progress_;

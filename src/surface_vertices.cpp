@@ -275,8 +275,8 @@ storeVertex (const BlockField &field, std::size_t point, const Eigen::Vector3d &
 }
 
 void
-placeVertices (const ImplicitField &field, const PolygonizerOptions &options, SparseGrid &grid,
-               SurfaceVertices &vertices, PolygonizerReport &report, const ProgressCallback &progress)
+placeVertices (const ImplicitField &field, const PolygonizerOptions &options, const MomentLattice *lattice,
+               SparseGrid &grid, SurfaceVertices &vertices, PolygonizerReport &report, const ProgressCallback &progress)
 {
   const int channels = field.points ().channels;
   constexpr double MORE = 0.05; // vertices on creases and borders follow, and shall not move the others
@@ -295,7 +295,7 @@ placeVertices (const ImplicitField &field, const PolygonizerOptions &options, Sp
   {
     const std::size_t last = std::min (first + SLICE, groups.size ());
     parallelFor (
-        last - first, options.threads, [&] { return GridField (field, options, grid.voxelSize ()); },
+        last - first, options.threads, [&] { return GridField (field, options, grid.voxelSize (), lattice); },
         [&] (GridField &worker, std::size_t i)
         { placer.placeInBlocks (worker, groups.begin (first + i), groups.end (first + i)); },
         [&report] (const GridField &worker) { worker.addTo (report); });

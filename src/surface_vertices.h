@@ -77,11 +77,13 @@ struct SurfaceVertices
 /** \brief Put a vertex on every cut edge of the grid, on f = iso.
  *
  * The root on each edge is found by safeguarded Newton steps from the linear guess.
+ * \param[in] lattice see BlockField
  * \param[in,out] grid cut edges marked; vertices get numbered
  */
 void
-placeVertices (const ImplicitField &field, const PolygonizerOptions &options, SparseGrid &grid,
-               SurfaceVertices &vertices, PolygonizerReport &report, const ProgressCallback &progress);
+placeVertices (const ImplicitField &field, const PolygonizerOptions &options, const MomentLattice *lattice,
+               SparseGrid &grid, SurfaceVertices &vertices, PolygonizerReport &report,
+               const ProgressCallback &progress);
 
 /** \brief Keep a vertex's place, and what the field says there: normal, border offset, sides and attributes. */
 void

@@ -118,7 +118,7 @@ private:
 
 void
 projectVertices (const ImplicitField &field, const PolygonizerOptions &options, std::size_t first, double limit,
-                 SurfaceVertices &vertices, PolygonizerReport &report)
+                 const MomentLattice *lattice, SurfaceVertices &vertices, PolygonizerReport &report)
 {
   vertices.resize (vertices.positions.size (), field.points ().channels);
   const std::vector<PointGroup> groups =
@@ -129,7 +129,7 @@ projectVertices (const ImplicitField &field, const PolygonizerOptions &options, 
   parallelFor (
       groups.size (), options.threads,
       [&] {
-        return Worker{LocalField (field), BlockField (field), {}, {}};
+        return Worker{LocalField (field), BlockField (field, lanes::bestEngine (), lattice), {}, {}};
       },
       [&] (Worker &worker, std::size_t g) { projector.project (worker, first, groups[g]); },
       [&report] (const Worker &worker)

@@ -7,10 +7,11 @@ namespace erkpa
 {
 
 /** \brief Project vertices \a first .. end to f = iso, each within \a limit of where it is, and fill in the rest.
+ * \param[in] lattice see BlockField
  * \param[in,out] vertices neighbours follow each other, or nearly
  */
 void
 projectVertices (const ImplicitField &field, const PolygonizerOptions &options, std::size_t first, double limit,
-                 SurfaceVertices &vertices, PolygonizerReport &report);
+                 const MomentLattice *lattice, SurfaceVertices &vertices, PolygonizerReport &report);
 
 } // namespace erkpa

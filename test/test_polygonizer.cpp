@@ -349,7 +349,7 @@ TEST (SurfaceFeet, AreWhereTheSurfaceIsNearestAndMissingWhereThereIsNone)
   }
   points.emplace_back (5.0, 0.0, 0.0);
   erkpa::PolygonizerReport report;
-  const std::vector<char> has_foot = erkpa::findFeet (*field, {}, voxel, points, report);
+  const std::vector<char> has_foot = erkpa::findFeet (*field, {}, voxel, nullptr, points, report);
   ASSERT_EQ (has_foot.size (), points.size ());
   for (std::size_t i = 0; i < directions.size (); ++i)
   {

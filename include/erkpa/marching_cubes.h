@@ -22,8 +22,11 @@ struct PolygonizerOptions
   double border_offset = 0.45;   ///< an open surface ends where the nodes' centroid lies this share of the support
                                  ///< radius aside (about 0.27 on the border of evenly spread points)
   int min_component_points = 10; ///< a piece of surface that passes fewer points than this is dropped
-  bool split_normals = false;    ///< crease vertices are doubled, with the normal of each side: see splitNormals ()
-  int threads = 0;               ///< 0 = all processors
+  double moment_tolerance = 0.01; ///< where supports of a constant radius hold hundreds of nodes, moments are summed up
+                                  ///< at points of a lattice and interpolated: weights of nodes are off by at most this
+                                  ///< share of the largest; in [0, 1), 0 = every sum is over the nodes
+  bool split_normals = false;     ///< crease vertices are doubled, with the normal of each side: see splitNormals ()
+  int threads = 0;                ///< 0 = all processors
 };
 
 /** \brief What the polygonizer did. */
@@ -31,6 +34,7 @@ struct PolygonizerReport
 {
   double voxel_size = 0.0;            ///< side of a grid cell in use
   std::size_t evaluations = 0;        ///< evaluations of the field
+  std::size_t moment_sums = 0;        ///< sums over nodes that evaluations were interpolated from
   std::size_t support_nodes = 0;      ///< nodes in the supports of all evaluations together
   std::size_t dropped_components = 0; ///< pieces no data supported
   double seconds_grid = 0.0;          ///< following the surface through the grid

@@ -251,6 +251,20 @@ public:
     return options_.polygonizer.iso_level;
   }
 
+  /** \brief How exact moments are where they may be interpolated: see PolygonizerOptions::moment_tolerance. In [0, 1);
+   * 0 = every sum is over the points in the support. Default 0.01. */
+  void
+  setMomentTolerance (double moment_tolerance)
+  {
+    options_.polygonizer.moment_tolerance = moment_tolerance;
+  }
+
+  double
+  getMomentTolerance () const
+  {
+    return options_.polygonizer.moment_tolerance;
+  }
+
   /** \brief Number of threads; 0 (default) takes all processors. The result does not depend on it. */
   void
   setNumberOfThreads (int threads)

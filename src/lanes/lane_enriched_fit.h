@@ -130,8 +130,9 @@ public:
       }
     }
     if constexpr (!IS_HERMITE)
-      LaneRaises<B, TermsT, LaneWeights<B, KernelT>> (weights_, centroid_, spread_)
-          .subtractFrom (gradient, system_, a_, c_, radius_gradient);
+      subtractRaises<B, TermsT> (
+          gradient, system_, a_, c_, radius_gradient, spread_,
+          NodeChanges<B, TermsT, LaneWeights<B, KernelT>> (weights_, centroid_, radius_gradient));
   }
 
   /** \brief Where a pivot that is raised moves the gradient by more than is computed here: of functional values, those

@@ -101,8 +101,9 @@ public:
         gradient[a] += c_[1 + a];
     }
     if constexpr (RAISES_MATTER)
-      LaneRaises<B, TermsT, LaneWeights<B, KernelT>> (weights_, centroid_, spread_)
-          .subtractFrom (gradient, system_, a_, c_, growth_of_points);
+      subtractRaises<B, TermsT> (
+          gradient, system_, a_, c_, growth_of_points, spread_,
+          NodeChanges<B, TermsT, LaneWeights<B, KernelT>> (weights_, centroid_, growth_of_points));
     if constexpr (IS_REFINED)
       LaneSquareRaises<B, CONSTRAINT, LaneWeights<B, KernelT>> (weights_, growth_of_points)
           .subtractFrom (gradient, system_, a_, c_, weight_);

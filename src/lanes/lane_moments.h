@@ -1,13 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include "lane_columns.h"
 #include "lane_products.h"
 #include "lane_reach.h"
 #include "lane_system.h"
-#include "lane_weights.h"
 
 #include <algorithm>
-#include <type_traits>
 
 namespace erkpa::lanes
 {
@@ -29,7 +28,7 @@ public:
   /** \brief At most so many supports are summed up at once. */
   static constexpr std::size_t SHARED = 4;
 
-  explicit LaneMoments (const Settings &settings) : settings_ (settings) {}
+  explicit LaneMoments (const Settings &settings) : settings_ (settings), columns_ (settings) {}
 
   /** \brief Sum up, and count the nodes, for so many supports with one list of nodes. */
   void
@@ -60,13 +59,9 @@ public:
   }
 
 private:
-  static constexpr int SIZE = TermsT::SIZE;
-  static constexpr ProductTable<TermsT> PRODUCTS{};
-  static constexpr int SLOPES = CONSTRAINT == Constraint::HERMITE ? SIZE - 1 : 0;
-  static constexpr int COLUMNS = PRODUCTS.count + SLOPES;
-  static constexpr std::size_t WIDTH = B::size, CHUNK = 64;
-  static constexpr std::size_t TOGETHER =
-      B::size == 16 ? 8 : 4; // nodes, for each of which operations wait for one another
+  using ColumnsT = LaneColumns<B, BASIS, CONSTRAINT, KernelT>;
+  static constexpr int SIZE = TermsT::SIZE, SLOPES = ColumnsT::SLOPES, COLUMNS = ColumnsT::COLUMNS;
+  static constexpr std::size_t WIDTH = B::size, CHUNK = ColumnsT::CHUNK;
 
   /** \brief What is summed up for a vector of points. */
   struct Sums
@@ -132,119 +127,14 @@ private:
     for (std::size_t first = 0; first < supports[0].size (); first += CHUNK)
     {
       const std::size_t nodes = std::min (CHUNK, supports[0].size () - first);
-      fillColumns (origin, supports[0], first, nodes);
+      columns_.fill (origin, supports[0], first, nodes);
       for (std::size_t s = 0; s < count; ++s)
       {
-        measure (supports[s], first, nodes, reaches[s]);
-        addAll<0, COLUMNS> (nodes, sums_[s].columns);
+        columns_.weigh (supports[s], first, nodes, reaches[s]);
+        columns_.template addTo<0, COLUMNS> (nodes, columns_.of_nodes, sums_[s].columns);
         addHeights (supports[s], first, nodes, sums_[s]);
       }
     }
-  }
-
-  /** \brief The weights of a chunk, from the distances. */
-  void
-  measure (const LaneSupport<B> &support, std::size_t first, std::size_t count, LaneReach<B> &reach)
-  {
-    const LaneWeights<B, KernelT> weights (settings_, support);
-    const std::size_t last = first + count, on_surface = std::clamp (support.onSurface (), first, last);
-    LaneReach<B> counted = reach;
-    float *to = of_weights_;
-    const auto step = [&] (auto together, std::size_t &i, bool is_on_surface)
-    {
-      constexpr std::size_t N = decltype (together)::value;
-      measureSome<N> (support, weights, i, is_on_surface, counted, to);
-      i += N;
-      to += WIDTH * N;
-    };
-    std::size_t i = first;
-    while (i + TOGETHER <= on_surface)
-      step (std::integral_constant<std::size_t, TOGETHER> (), i, true);
-    while (i + 2 <= on_surface)
-      step (std::integral_constant<std::size_t, 2> (), i, true);
-    while (i < on_surface)
-      step (std::integral_constant<std::size_t, 1> (), i, true);
-    if (i == support.onSurface ())
-      counted.endOnSurface ();
-    while (i < last)
-      step (std::integral_constant<std::size_t, 1> (), i, false);
-    reach = counted;
-  }
-
-  template <std::size_t N>
-  [[gnu::always_inline]] static void
-  measureSome (const LaneSupport<B> &support, const LaneWeights<B, KernelT> &weights, std::size_t i, bool is_on_surface,
-               LaneReach<B> &reach, float *of_weights)
-  {
-    B squared[N], t[N];
-    support.template distances<N> (i, squared);
-    for (std::size_t n = 0; n < N; ++n)
-      is_on_surface ? reach.count (squared[n]) : reach.countOffSurface (squared[n]);
-    weights.template shares<N> (squared, t);
-    weights.template weights<N> (i, t);
-    for (std::size_t n = 0; n < N; ++n)
-      t[n].store_unaligned (of_weights + WIDTH * n);
-  }
-
-  /** \brief What the nodes of a chunk bring, so many of them at once as there are lanes. */
-  void
-  fillColumns (const float *origin, const LaneSupport<B> &support, std::size_t first, std::size_t count)
-  {
-    const float *const lambda = support.near (LaneSupport<B>::LAMBDA);
-    for (std::size_t i = 0; i < count; i += WIDTH)
-    {
-      B u[3], n[3], R[SIZE];
-      for (std::size_t a = 0; a < 3; ++a)
-      {
-        u[a] = B::load_unaligned (support.near (a) + first + i) - B (origin[a]);
-        n[a] = B::load_unaligned (support.near (LaneSupport<B>::NORMAL + a) + first + i);
-      }
-      TermsT::evaluate (u, dot (u, u), R);
-      for (int p = 0; p < PRODUCTS.count; ++p)
-        (p < SIZE ? R[p] : R[PRODUCTS.first[p]] * R[PRODUCTS.second[p]]).store_unaligned (columns_[p] + i);
-      if constexpr (CONSTRAINT == Constraint::HERMITE)
-        storeSlopes (u, n, i);
-      B level = lambda != nullptr ? B::load_unaligned (lambda + first + i) : B (0.0f);
-      if constexpr (CONSTRAINT == Constraint::FUNCTIONAL)
-        level -= dot (u, n);
-      level.store_unaligned (levels_ + i);
-    }
-  }
-
-  void
-  storeSlopes (const B *u, const B *n, std::size_t i)
-  {
-    B slopes[SIZE];
-    for (B &slope : slopes)
-      slope = B (0.0f);
-    TermsT::addNormal (B (1.0f), u, n, slopes);
-    for (int j = 1; j < SIZE; ++j)
-      slopes[j].store_unaligned (columns_[PRODUCTS.count + j - 1] + i);
-  }
-
-  /** \brief Adds the columns from FIRST on, so many at once as there are registers. */
-  template <int FIRST, int COUNT>
-  void
-  addAll (std::size_t count, B *sums) const
-  {
-    constexpr int MOST = B::size == 16 ? 26 : 12, GROUPS = (COUNT + MOST - 1) / MOST;
-    constexpr int NOW = (COUNT + GROUPS - 1) / GROUPS;
-    B added[NOW];
-#pragma GCC unroll 32
-    for (int c = 0; c < NOW; ++c)
-      added[c] = sums[FIRST + c];
-    for (std::size_t i = 0; i < count; ++i)
-    {
-      const B weight = B::load_unaligned (of_weights_ + WIDTH * i);
-#pragma GCC unroll 32
-      for (int c = 0; c < NOW; ++c)
-        added[c] = xsimd::fma (weight, B (columns_[FIRST + c][i]), added[c]);
-    }
-#pragma GCC unroll 32
-    for (int c = 0; c < NOW; ++c)
-      sums[FIRST + c] = added[c];
-    if constexpr (COUNT > NOW)
-      addAll<FIRST + NOW, COUNT - NOW> (count, sums);
   }
 
   /** \brief Σ w h R, where nodes ask for a height h: λ or, where their tangent planes are fitted, λ - (x_i - x)·n. */
@@ -262,37 +152,27 @@ private:
     const B shift[] = {sums.shift[0], sums.shift[1], sums.shift[2]};
     for (std::size_t i = 0; i < count; ++i)
     {
-      B height (levels_[i]);
+      B height (columns_.levels[i]);
       if constexpr (CONSTRAINT == Constraint::FUNCTIONAL)
         for (int a = 0; a < 3; ++a)
           height = xsimd::fma (shift[a], B (normals[a][i]), height); // eq. (2)
-      const B weighted = B::load_unaligned (of_weights_ + WIDTH * i) * height;
+      const B weighted = columns_.weight (i) * height;
       for (int j = 0; j < SIZE; ++j)
-        added[j] = xsimd::fma (weighted, B (columns_[j][i]), added[j]);
+        added[j] = xsimd::fma (weighted, B (columns_.of_nodes[j][i]), added[j]);
     }
     for (int j = 0; j < SIZE; ++j)
       sums.heights[j] = added[j];
   }
 
-  /** \brief From y_i = x_i - origin to x_i - x: R (y - s) = T R (y), M <- T M T^T, b <- T b. */
+  /** \brief From y_i = x_i - origin to x_i - x: b <- T b, and M as well. */
   static void
   bringToPoint (const LaneSupport<B> &support, const Sums &sums, SystemT &system)
   {
-    B full[SIZE][SIZE], slopes[SIZE], heights[SIZE];
-    for (int i = 0; i < SIZE; ++i)
-      for (int j = 0; j < SIZE; ++j)
-        full[i][j] = sums.columns[PRODUCTS.column[i < j ? at (j, i) : at (i, j)]]; // symmetric
-    for (auto &row : full)
-      TermsT::shift (sums.shift, row);
+    B slopes[SIZE], heights[SIZE];
+    shiftProducts<TermsT> (sums.shift, sums.columns, system.M);
     for (int j = 0; j < SIZE; ++j)
     {
-      B column[SIZE];
-      for (int i = 0; i < SIZE; ++i)
-        column[i] = full[i][j];
-      TermsT::shift (sums.shift, column);
-      for (int i = j; i < SIZE; ++i)
-        system.M[at (i, j)] = column[i];
-      slopes[j] = SLOPES > 0 && j > 0 ? sums.columns[PRODUCTS.count + j - 1] : B (0.0f);
+      slopes[j] = SLOPES > 0 && j > 0 ? sums.columns[ColumnsT::PRODUCTS.count + j - 1] : B (0.0f);
       heights[j] = sums.heights[j];
     }
     if constexpr (SLOPES > 0)
@@ -308,8 +188,7 @@ private:
   LaneReach<B> reaches_[SHARED];
   Sums sums_[SHARED];
   SystemT systems_[SHARED];
-  // Of a chunk:
-  float of_weights_[CHUNK * WIDTH], columns_[COLUMNS][CHUNK], levels_[CHUNK];
+  ColumnsT columns_;
 };
 
 } // namespace erkpa::lanes

@@ -53,4 +53,32 @@ private:
   }
 };
 
+/** \brief M from sums of the distinct products, about an origin that is a step s farther on.
+ *
+ * R (y - s) = T R (y), so that M <- T M T^T.
+ * \param[out] M row after row of its lower triangle
+ */
+template <typename TermsT, typename B>
+void
+shiftProducts (const B *s, const B *products, B *M)
+{
+  constexpr int SIZE = TermsT::SIZE;
+  constexpr ProductTable<TermsT> PRODUCTS{};
+  B full[SIZE][SIZE];
+  for (int i = 0; i < SIZE; ++i)
+    for (int j = 0; j < SIZE; ++j)
+      full[i][j] = products[PRODUCTS.column[i < j ? at (j, i) : at (i, j)]]; // symmetric
+  for (auto &row : full)
+    TermsT::shift (s, row);
+  for (int j = 0; j < SIZE; ++j)
+  {
+    B column[SIZE];
+    for (int i = 0; i < SIZE; ++i)
+      column[i] = full[i][j];
+    TermsT::shift (s, column);
+    for (int i = j; i < SIZE; ++i)
+      M[at (i, j)] = column[i];
+  }
+}
+
 } // namespace erkpa::lanes

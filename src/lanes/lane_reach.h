@@ -56,6 +56,20 @@ public:
     return in_support_.count ();
   }
 
+  /** \brief Of those the ones on the surface. */
+  B
+  nodesOnSurface () const
+  {
+    return on_surface_.count ();
+  }
+
+  /** \brief Of these the ones that count for Settings::reach. */
+  B
+  nodesInReach () const
+  {
+    return in_quarter_.count ();
+  }
+
   Mask
   isDefined () const
   {

@@ -207,6 +207,43 @@ struct Search
   std::size_t (*countWithin) (const float *squared, std::size_t count, float limit);
 };
 
+/** \brief A box of points of a lattice, and sums there: see erkpa::MomentLattice. Lengths are in ε. */
+struct Lattice
+{
+  static constexpr std::size_t MOST = 12; ///< points along an axis
+
+  std::size_t sides[3]; ///< points along the axes, x first
+  float first[3];       ///< position of the lowest one
+  float spacing;        ///< from one to the next
+  const float *sums;    ///< a record for each point, all about the origin
+  std::size_t record;   ///< its length
+  std::size_t channels; ///< of attributes, the last ones in a record
+};
+
+/** \brief Moments that are summed up at the points of a lattice only, and interpolated between these. */
+struct LatticeMethods
+{
+  /** \brief How many sums there are, but for those of attributes. The basis is linear or spherical. */
+  std::size_t (*columns) (const Settings &settings);
+
+  /** \brief Sum up what nodes bring to points of the lattice, about the origin.
+   * \param[out] sums column after column, those of attributes as well; has room for a multiple of MAX_WIDTH points
+   * \param[in] stride from a column to the next one
+   */
+  void (*sum) (const Settings &settings, const Nodes &nodes, const Points &points, const Scratch &scratch,
+               std::size_t stride, float *sums);
+
+  /** \brief Bring sums to another origin, and to records.
+   * \param[in] steps to the new origin, of each point; readable up to a multiple of MAX_WIDTH, as the sums are
+   */
+  void (*shift) (const Settings &settings, std::size_t channels, const float *const *steps, const float *sums,
+                 std::size_t count, std::size_t stride, float *records);
+
+  /** \brief What evaluate () finds, from interpolated sums. Whatever stays open here is State::UNSETTLED: ask the
+   * nodes. Each point has the four points of the lattice around it along each axis in the box. */
+  void (*interpolate) (const Settings &settings, const Lattice &lattice, const Points &points, const Samples &samples);
+};
+
 /** \brief Nodes that vote on how faces combine: see FaceVote. Arrays must be readable up to a multiple of MAX_WIDTH,
  * with weights of zero there. */
 struct Voters
@@ -258,6 +295,7 @@ struct Engine
   const char *name;
   std::size_t width; ///< points per vector
   const Search *search;
+  const LatticeMethods *lattice;
   void (*evaluate) (const Settings &settings, const Nodes &nodes, const Points &points, const SharpSurfaces &sharp,
                     const Scratch &scratch, const Samples &samples);
 

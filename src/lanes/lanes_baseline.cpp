@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "lane_election.h"
 #include "lane_engine.h"
+#include "lane_lattice_engine.h"
 #include "lane_links.h"
 #include "lane_search.h"
 
@@ -10,6 +11,7 @@ namespace erkpa::lanes
 using Arch = xsimd::default_arch;
 extern const Engine BASELINE;
 constexpr Engine BASELINE{
-    "baseline", xsimd::batch<float, Arch>::size, &SEARCH<Arch>, evaluate<Arch>, measureTrees<Arch>, linkSmooth<Arch>};
+    "baseline",      xsimd::batch<float, Arch>::size, &SEARCH<Arch>, &LATTICE<Arch>, evaluate<Arch>, measureTrees<Arch>,
+    linkSmooth<Arch>};
 
 } // namespace erkpa::lanes

@@ -80,6 +80,7 @@ takeMeshing (const po::variables_map &variables, CommandLine &line)
   ifGiven (variables, "voxel", [&] (const OptionText &o) { polygonizer.voxel_size = toLength (o); });
   ifGiven (variables, "resolution", [&] (const OptionText &o) { polygonizer.resolution = toCount (o, 1); });
   ifGiven (variables, "iso", [&] (const OptionText &o) { polygonizer.iso_level = toNumber (o); });
+  ifGiven (variables, "moment_tolerance", [&] (const OptionText &o) { polygonizer.moment_tolerance = toNumber (o); });
   ifGiven (variables, "threads", [&] (const OptionText &o) { polygonizer.threads = normals.threads = toCount (o, 1); });
   ifGiven (variables, "viewpoint",
            [&] (const OptionText &o)

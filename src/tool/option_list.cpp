@@ -154,6 +154,11 @@ describeMeshing (const PolygonizerOptions &polygonizer)
                     "use voxel")
            .c_str ())                                                                                             //
       ("iso", word ("V"), withDefault ("the surface is f = V, positive outside", polygonizer.iso_level).c_str ()) //
+      ("moment_tolerance", word ("T"),
+       withDefault ("how far weights may be off, as a share of the largest, where supports of a constant radius hold "
+                    "hundreds of points and sums are interpolated; 0: none are",
+                    polygonizer.moment_tolerance)
+           .c_str ()) //
       ("viewpoint", word ("x,y,z"),
        "where the sensor stood, for the sign of estimated normals (default: as a .pcd or .ply file says; "
        "without, "

@@ -95,6 +95,7 @@ writeReport (const CommandLine &line, const Report &report, double crease_length
                          {"residual", report.collocation.residual}};
   json["voxel_size"] = report.polygonizer.voxel_size;
   json["evaluations"] = report.polygonizer.evaluations;
+  json["moment_sums"] = report.polygonizer.moment_sums;
   json["mean_nodes_per_evaluation"] = report.meanNodesPerEvaluation ();
   json["sharp_edges"] = sharpEdgesToJson (line, report, crease_length);
   json["mesh"] = meshToJson (report);
