@@ -4,6 +4,7 @@
 #include "crease_geometry.h"
 #include "crease_links.h"
 #include "mesh_intersections.h"
+#include "parallel_collect.h"
 #include "threads.h"
 
 #include <Eigen/Geometry>
@@ -132,19 +133,33 @@ private:
     return false;
   }
 
+  /** \brief The loops for which \a is_listed holds, in their order. */
+  template <typename IsListedT>
+  std::vector<std::size_t>
+  listLoops (IsListedT is_listed) const
+  {
+    constexpr std::size_t STRETCH = 256;
+    return parallelCollect<std::vector<std::size_t>> (
+        loops_.size (), threads_,
+        [&] (std::size_t first, std::size_t last, std::vector<std::size_t> &listed)
+        {
+          for (std::size_t loop = first; loop < last; ++loop)
+            if (is_listed (loop))
+              listed.push_back (loop);
+        },
+        STRETCH);
+  }
+
   /** \brief Gives up the crease vertices of loops that fold over; false where none does. */
   bool
   dropFolded ()
   {
-    bool changed = false;
     links_.join ();
-    for (std::size_t i = 0; i < loops_.size (); ++i)
-      if (links_.has (i) && isFolded (i))
-      {
-        links_.giveUp (i);
-        changed = true;
-      }
-    return changed;
+    const std::vector<std::size_t> folded =
+        listLoops ([this] (std::size_t loop) { return links_.has (loop) && isFolded (loop); });
+    for (const std::size_t loop : folded)
+      links_.giveUp (loop);
+    return !folded.empty ();
   }
 
   /** \brief Undoes what brought triangles to pass through each other: vertices outside the cells they were found for.
@@ -182,15 +197,20 @@ private:
     std::vector<char> is_outside (vertices_.positions.size (), 0);
     for (std::size_t v = 0; v < vertices_.found.size (); ++v)
       is_outside[v] = vertices_.found[v] != vertices_.positions[v] ? 1 : 0;
-    for (std::size_t i = 0; i < loops_.size (); ++i)
-      if (links_.has (i) && !isInsideCell (links_.center (i), loops_[i], voxel_, vertices_))
-        is_outside[static_cast<std::size_t> (links_.center (i))] = 1;
-    std::vector<int> suspects;
-    for (std::size_t t = vertices_.found.empty () ? before_loops_ : 0; t < triangles_.size (); ++t)
-      if (std::any_of (triangles_[t].begin (), triangles_[t].end (),
-                       [&] (int v) { return is_outside[static_cast<std::size_t> (v)] != 0; }))
-        suspects.push_back (static_cast<int> (t));
-    return suspects;
+    for (const std::size_t loop :
+         listLoops ([this] (std::size_t i)
+                    { return links_.has (i) && !isInsideCell (links_.center (i), loops_[i], voxel_, vertices_); }))
+      is_outside[static_cast<std::size_t> (links_.center (loop))] = 1;
+    const std::size_t start = vertices_.found.empty () ? before_loops_ : 0;
+    return parallelCollect<std::vector<int>> (
+        triangles_.size () - start, threads_,
+        [&] (std::size_t first, std::size_t last, std::vector<int> &suspects)
+        {
+          for (std::size_t t = start + first; t < start + last; ++t)
+            if (std::any_of (triangles_[t].begin (), triangles_[t].end (),
+                             [&] (int v) { return is_outside[static_cast<std::size_t> (v)] != 0; }))
+              suspects.push_back (static_cast<int> (t));
+        });
   }
 
   /** \brief Appends the triangles of all loops, and for now no more than the positions of vertices in their middles. */

@@ -3,6 +3,7 @@
 
 #include "feature_loops.h"
 
+#include <algorithm>
 #include <cstddef>
 #include <map>
 #include <set>
@@ -58,7 +59,7 @@ public:
       {
         const VertexPair edge = orderedPair (center (of[0]), center (of[1]));
         if (edge.first != edge.second && edges_.insert (edge).second)
-          joined_[pair] = {of[0], of[1]};
+          joined_.push_back ({pair, {of[0], of[1]}});
       }
   }
 
@@ -66,15 +67,20 @@ public:
   int
   next (std::size_t loop, int a, int b) const
   {
-    const auto found = joined_.find (orderedPair (a, b));
-    if (found == joined_.end ())
+    const VertexPair pair = orderedPair (a, b);
+    const auto found = std::lower_bound (joined_.begin (), joined_.end (), pair,
+                                         [] (const Joined &joined, const VertexPair &p) { return joined.first < p; });
+    if (found == joined_.end () || found->first != pair)
       return -1;
     const auto &[one, other] = found->second;
     return loop == one ? center (other) : center (one);
   }
 
-  /** \brief The two loops that each crossing joins. */
-  const std::map<VertexPair, std::pair<std::size_t, std::size_t>> &
+  /** \brief A crossing and the two loops that it joins. */
+  using Joined = std::pair<VertexPair, std::pair<std::size_t, std::size_t>>;
+
+  /** \brief All of them, by their crossings. */
+  const std::vector<Joined> &
   joined () const
   {
     return joined_;
@@ -91,7 +97,7 @@ private:
   std::vector<int> centers_; // crease vertices of the loops
   std::vector<char> on_crease_;
   std::map<VertexPair, std::vector<std::size_t>> crossings_; // the loops that a crossing is of
-  std::map<VertexPair, std::pair<std::size_t, std::size_t>> joined_;
+  std::vector<Joined> joined_;
   std::set<VertexPair> edges_;
 };
 

@@ -3,11 +3,13 @@
 
 #include <erkpa/face_of_points.h>
 
+#include "found_nodes.h"
 #include "node_table.h"
 #include "parallel_collect.h"
 
 #include <algorithm>
 #include <cmath>
+#include <tuple>
 #include <utility>
 
 namespace erkpa
@@ -28,6 +30,13 @@ searchOf (const std::vector<Meeting> &meetings, int threads)
   return makeGridSearch (positions, threads);
 }
 
+Eigen::Vector3f
+middleOf (const OrientedPoints &points, int node, int other)
+{
+  return 0.5f *
+         (points.positions[static_cast<std::size_t> (node)] + points.positions[static_cast<std::size_t> (other)]);
+}
+
 } // namespace
 
 bool
@@ -40,8 +49,8 @@ separatesFaces (const SharpSurface &surface)
 }
 
 std::shared_ptr<const FaceMap>
-FaceMap::make (const OrientedPoints &points, const NeighborSearch &search,
-               const std::vector<SharpSurface::ConstPtr> &surfaces, double spacing, int threads)
+FaceMap::make (const OrientedPoints &points, const PointGrid &grid, const std::vector<SharpSurface::ConstPtr> &surfaces,
+               double spacing, int threads)
 {
   const std::shared_ptr<FaceMap> map (new FaceMap);
   map->addSurfaces (points, surfaces);
@@ -49,7 +58,7 @@ FaceMap::make (const OrientedPoints &points, const NeighborSearch &search,
     return nullptr;
   map->assignNodes (points, spacing, threads);
   map->search_ = searchOf (map->meetings_, threads);
-  map->findJoints (points, search, spacing, threads);
+  map->findJoints (points, grid, spacing, threads);
   map->search_ = searchOf (map->meetings_, threads);
   return map;
 }
@@ -122,61 +131,72 @@ FaceMap::assignNodes (const OrientedPoints &points, double spacing, int threads)
 
 /** \brief Neighbours on two faces that nothing keeps apart where they are join the faces. */
 void
-FaceMap::findJoints (const OrientedPoints &points, const NeighborSearch &search, double spacing, int threads)
+FaceMap::findJoints (const OrientedPoints &points, const PointGrid &grid, double spacing, int threads)
 {
-  constexpr std::size_t STRETCH = 256;
-  auto joints = parallelCollect<std::vector<Meeting>> (
+  constexpr std::size_t STRETCH = 1024; // places
+  auto joints = parallelCollect<std::vector<Joint>> (
       points.size (), threads,
-      [&] (std::size_t first, std::size_t last, std::vector<Meeting> &found)
+      [&] (std::size_t first, std::size_t last, std::vector<Joint> &found)
       {
-        FoundNodes near;
-        for (std::size_t i = first; i < last; ++i)
-          if (faces_[i] >= 0)
-            addJoints (points, search, spacing, i, near, found);
+        NearbyNodes near (points, grid);
+        near.visitRuns (first, last,
+                        [&] (std::size_t from, std::size_t to) { addJoints (points, spacing, from, to, near, found); });
       },
       STRETCH);
+  std::sort (joints.begin (), joints.end (),
+             [] (const Joint &a, const Joint &b) { return std::tie (a.node, a.other) < std::tie (b.node, b.other); });
   // A joint holds as far as the separations do: around the end of a crease the nearer of them decides.
-  for (Meeting &joint : joints)
-    joint.reach = largest_reach_;
-  meetings_.insert (meetings_.end (), joints.begin (), joints.end ());
+  for (const Joint &joint : joints)
+    meetings_.push_back ({joint.middle, std::min (faceOf (joint.node), faceOf (joint.other)),
+                          std::max (faceOf (joint.node), faceOf (joint.other)), -1, largest_reach_});
 }
 
+/** \brief Those of the nodes of a run. */
 void
-FaceMap::addJoints (const OrientedPoints &points, const NeighborSearch &search, double spacing, std::size_t i,
-                    FoundNodes &near, std::vector<Meeting> &joints) const
+FaceMap::addJoints (const OrientedPoints &points, double spacing, std::size_t first, std::size_t last,
+                    NearbyNodes &near, std::vector<Joint> &joints) const
 {
-  constexpr double NEIGHBORS = 4.0;     // spacings
+  constexpr double NEIGHBORS = 4.0; // spacings
+  near.gather (first, last, NEIGHBORS * spacing);
+  const int face = faceOf (near.nodeAt (first));
+  bool has_other = false;
+  for (std::size_t n = 0; n < near.size (); ++n)
+    has_other = has_other || faceOf (near.node (n)) != face;
+  if (!has_other) // inside a face, as most are
+    return;
+  std::vector<int> meetings;
+  for (std::size_t place = first; place < last; ++place)
+    for (std::size_t n = 0; n < near.size (); ++n)
+    {
+      const int i = near.nodeAt (place), j = near.node (n);
+      if (j > i && faceOf (i) >= 0 && faceOf (j) >= 0 && faceOf (i) != faceOf (j) &&
+          areJoined (points, i, j, NEIGHBORS * spacing, meetings))
+        joints.push_back ({i, j, middleOf (points, i, j)});
+    }
+}
+
+/** \brief Whether nodes of two faces are neighbours on one surface where nothing keeps the faces apart. */
+bool
+FaceMap::areJoined (const OrientedPoints &points, int i, int j, double reach, std::vector<int> &meetings) const
+{
   constexpr float BEND = 0.1f;          // of the distance: a larger step is that between two sheets
   constexpr float LEAST_COSINE = 0.87f; // 30 degrees
-  search.withinRadius (points.positions[i], NEIGHBORS * spacing, near.nodes, near.squared);
-  const auto is_other = [&] (int j)
-  {
-    const int other = faces_[static_cast<std::size_t> (j)];
-    return j > static_cast<int> (i) && other >= 0 && other != faces_[i];
-  };
-  near.nodes.erase (std::remove_if (near.nodes.begin (), near.nodes.end (), [&] (int j) { return !is_other (j); }),
-                    near.nodes.end ());
-  std::sort (near.nodes.begin (), near.nodes.end ());
-  std::vector<int> meetings;
-  for (const int neighbor : near.nodes)
-  {
-    const auto j = static_cast<std::size_t> (neighbor);
-    const Eigen::Vector3f way = points.positions[j] - points.positions[i];
-    const float step = 0.5f * std::abs (way.dot (points.normals[i] + points.normals[j]));
-    if (points.normals[i].dot (points.normals[j]) < LEAST_COSINE || step > BEND * way.norm ())
-      continue;
-    const Eigen::Vector3f middle = 0.5f * (points.positions[i] + points.positions[j]);
-    const int face = std::min (faces_[i], faces_[j]), other = std::max (faces_[i], faces_[j]);
-    meetingsNear (middle.cast<double> (), 0.0, meetings);
-    const auto keeps_apart = [&] (int m)
-    {
-      const Meeting &meeting = meetings_[static_cast<std::size_t> (m)];
-      return meeting.face == face && meeting.other == other &&
-             (meeting.position - middle).norm () < NEIGHBORS * spacing;
-    };
-    if (std::none_of (meetings.begin (), meetings.end (), keeps_apart))
-      joints.push_back ({middle, face, other, -1, 0.0});
-  }
+  const auto one = static_cast<std::size_t> (i), two = static_cast<std::size_t> (j);
+  const Eigen::Vector3f way = points.positions[two] - points.positions[one];
+  const Eigen::Vector3f &normal = points.normals[one], &other = points.normals[two];
+  if (static_cast<double> (way.norm ()) > reach || normal.dot (other) < LEAST_COSINE ||
+      0.5f * std::abs (way.dot (normal + other)) > BEND * way.norm ())
+    return false;
+  const Eigen::Vector3f middle = middleOf (points, i, j);
+  meetingsNear (middle.cast<double> (), 0.0, meetings);
+  return std::none_of (meetings.begin (), meetings.end (),
+                       [&] (int m)
+                       {
+                         const Meeting &meeting = meetings_[static_cast<std::size_t> (m)];
+                         return meeting.face == std::min (faceOf (i), faceOf (j)) &&
+                                meeting.other == std::max (faceOf (i), faceOf (j)) &&
+                                (meeting.position - middle).norm () < reach;
+                       });
 }
 
 void

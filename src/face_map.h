@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "found_nodes.h"
+#include "nearby_nodes.h"
 
 #include <erkpa/neighbor_search.h>
 #include <erkpa/oriented_points.h>
@@ -32,11 +32,12 @@ class FaceMap
 {
 public:
   /** \brief The map that sharp surfaces between faces of points make; null where there are none among them.
+   * \param[in] grid over the positions of \a points
    * \param[in] surfaces any
    * \param[in] spacing distance between neighbouring nodes
    */
   static std::shared_ptr<const FaceMap>
-  make (const OrientedPoints &points, const NeighborSearch &search, const std::vector<SharpSurface::ConstPtr> &surfaces,
+  make (const OrientedPoints &points, const PointGrid &grid, const std::vector<SharpSurface::ConstPtr> &surfaces,
         double spacing, int threads);
 
   int
@@ -66,11 +67,21 @@ private:
   assignNodes (const OrientedPoints &points, double spacing, int threads);
 
   void
-  findJoints (const OrientedPoints &points, const NeighborSearch &search, double spacing, int threads);
+  findJoints (const OrientedPoints &points, const PointGrid &grid, double spacing, int threads);
+
+  /** \brief Two nodes, the first one with the lower number. */
+  struct Joint
+  {
+    int node, other;
+    Eigen::Vector3f middle;
+  };
 
   void
-  addJoints (const OrientedPoints &points, const NeighborSearch &search, double spacing, std::size_t i,
-             FoundNodes &near, std::vector<Meeting> &joints) const;
+  addJoints (const OrientedPoints &points, double spacing, std::size_t first, std::size_t last, NearbyNodes &near,
+             std::vector<Joint> &joints) const;
+
+  bool
+  areJoined (const OrientedPoints &points, int i, int j, double reach, std::vector<int> &meetings) const;
 
   std::vector<int> faces_; // of the nodes, by place in known_faces_
   std::vector<SharpSurface::ConstPtr> known_faces_;

@@ -123,24 +123,40 @@ public:
    * order (Filter-Kruskal, Osipov, Sanders, Singler 2009).
    */
   DisjointSets &
-  grow (const std::vector<Growths> &parts)
+  grow (const std::vector<Growths> &parts, int threads)
   {
-    std::vector<Growth> open;
+    constexpr std::size_t FEW = 64;
     for (std::size_t band = 0; band < Growths::BANDS; ++band)
     {
-      open.clear ();
-      for (const Growths &part : parts)
-        for (std::size_t i = part.firsts[band]; i < part.firsts[band + 1]; ++i)
-          if (sets_.find (part.growths[i].from) != sets_.find (part.growths[i].to))
-            open.push_back (part.growths[i]);
+      std::vector<Growth> open = listOpen (parts, band, threads);
       std::sort (open.begin (), open.end ());
       for (const Growth &growth : open)
         grow (growth);
+      if (FEW * open.size () > apart_.size ())
+        for (int i = 0; i < static_cast<int> (apart_.size ()); ++i)
+          sets_.find (i); // shortens the ways that listOpen () takes
     }
     return sets_;
   }
 
 private:
+  /** \brief Those of a band that do not lie within a face yet. */
+  std::vector<Growth>
+  listOpen (const std::vector<Growths> &parts, std::size_t band, int threads) const
+  {
+    constexpr std::size_t STRETCH = 8; // parts
+    return parallelCollect<std::vector<Growth>> (
+        parts.size (), threads,
+        [&] (std::size_t first, std::size_t last, std::vector<Growth> &open)
+        {
+          for (std::size_t p = first; p < last; ++p)
+            for (std::size_t i = parts[p].firsts[band]; i < parts[p].firsts[band + 1]; ++i)
+              if (sets_.findFrom (parts[p].growths[i].from) != sets_.findFrom (parts[p].growths[i].to))
+                open.push_back (parts[p].growths[i]);
+        },
+        STRETCH);
+  }
+
   void
   grow (const Growth &growth)
   {
@@ -222,7 +238,7 @@ segmentFaces (const OrientedPoints &points, const PointLayout &layout, const Seg
   const NodeLinks links = linkNeighbors (points, *layout.grid, options, threads, is_suspect);
   const NodeLists apart = findNodesApart (points, *layout.search, options, links, is_suspect, threads);
   FaceGrower grower (points.size (), apart);
-  DisjointSets &sets = grower.grow (GrowthLister (points, options, links).list (threads));
+  DisjointSets &sets = grower.grow (GrowthLister (points, options, links).list (threads), threads);
 
   FaceSegmentation result;
   const auto n = static_cast<int> (points.size ());

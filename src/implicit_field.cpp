@@ -75,7 +75,7 @@ ImplicitField::ImplicitField (std::shared_ptr<const OrientedPoints> points, Neig
       enriching_places_.push_back (static_cast<int> (i));
     }
   pencils_ = std::make_shared<const std::vector<Pencil>> (findPencils (enriching_, spacing));
-  faces_ = FaceMap::make (*points_, *grid_search_, options_.sharp_surfaces, spacing, threads);
+  faces_ = FaceMap::make (*points_, *layout->grid, options_.sharp_surfaces, spacing, threads);
   node_table_ = std::make_shared<const NodeTable> (*points_, layout->grid, threads);
   if (options_.constraint != Constraint::OFFSURFACE)
     return;

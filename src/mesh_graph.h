@@ -29,6 +29,15 @@ public:
     return i;
   }
 
+  /** \brief The same; shortens no ways, so that several threads may ask. */
+  int
+  findFrom (int i) const
+  {
+    while (parents_[static_cast<std::size_t> (i)] != i)
+      i = parents_[static_cast<std::size_t> (i)];
+    return i;
+  }
+
   /** \brief The smaller representative stays, so that the result does not depend on the order. */
   void
   unite (int a, int b)

@@ -31,15 +31,23 @@ NearbyNodes::endOfRun (std::size_t first, std::size_t last) const
 }
 
 void
-NearbyNodes::gather (std::size_t first, std::size_t last, double reach)
+NearbyNodes::findBall (std::size_t first, std::size_t last, Eigen::Vector3d &center, double &radius) const
 {
   Eigen::AlignedBox3f box;
   for (std::size_t place = first; place < last; ++place)
     box.extend (positionAt (place));
-  const Eigen::Vector3f center = box.center ();
-  const double exact = 0.5 * static_cast<double> (box.diagonal ().norm ()) + reach;
-  const double all = exact + ROUNDING * (exact + static_cast<double> (center.norm ()));
-  grid_.findWithin (center.cast<double> (), all, found_);
+  center = box.center ().cast<double> ();
+  radius = 0.5 * static_cast<double> (box.diagonal ().norm ());
+}
+
+void
+NearbyNodes::gather (std::size_t first, std::size_t last, double reach)
+{
+  Eigen::Vector3d center;
+  double radius = 0.0;
+  findBall (first, last, center, radius);
+  const double exact = radius + reach, all = exact + ROUNDING * (exact + center.norm ());
+  grid_.findWithin (center, all, found_);
   copyColumns ();
 }
 

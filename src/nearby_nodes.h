@@ -26,6 +26,22 @@ public:
   std::size_t
   endOfRun (std::size_t first, std::size_t last) const;
 
+  /** \brief Calls visit (first, last) for the runs from a place on. */
+  template <typename VisitT>
+  void
+  visitRuns (std::size_t first, std::size_t last, VisitT visit) const
+  {
+    for (std::size_t end = first; first < last; first = end)
+    {
+      end = endOfRun (first, last);
+      visit (first, end);
+    }
+  }
+
+  /** \brief A ball that holds a run. */
+  void
+  findBall (std::size_t first, std::size_t last, Eigen::Vector3d &center, double &radius) const;
+
   /** \brief Take all nodes within \a reach of any place of a run, in the order of the grid, and some farther ones. */
   void
   gather (std::size_t first, std::size_t last, double reach);

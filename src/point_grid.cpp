@@ -218,15 +218,23 @@ PointGrid::findWithin (const Eigen::Vector3d &center, double radius, Places &fou
                                                          {found.places.data (), found.squared.data ()});
 }
 
+/** \brief Kept, for there are many small queries. */
+PointGrid::Places &
+PointGrid::placesOfThread ()
+{
+  thread_local Places places;
+  return places;
+}
+
 void
 PointGrid::withinRadius (const Eigen::Vector3d &x, double radius, std::vector<int> &indices,
                          std::vector<float> &squared_distances) const
 {
-  thread_local Places found; // kept, for there are many small queries
+  Places &found = placesOfThread ();
   findWithin (x, radius, found);
-  indices.clear ();
+  indices.resize (found.count);
   for (std::size_t i = 0; i < found.count; ++i)
-    indices.push_back (static_cast<int> (index_[found.places[i]]));
+    indices[i] = static_cast<int> (index_[found.places[i]]);
   squared_distances.assign (found.squared.begin (), found.squared.begin () + static_cast<std::ptrdiff_t> (found.count));
 }
 
@@ -239,17 +247,15 @@ PointGrid::nearestK (const Eigen::Vector3d &x, int k, std::vector<std::pair<floa
   constexpr double FIRST = 0.17, MARGIN = 1.2;
   const auto wanted = std::min (static_cast<std::size_t> (k), size ());
   double reach = FIRST * cell_ * std::sqrt (static_cast<double> (k));
-  thread_local std::vector<int> indices; // kept, for there are many small queries
-  thread_local std::vector<float> squared;
-  for (withinRadius (x, reach, indices, squared); indices.size () < wanted && reach < EVERYWHERE;
-       withinRadius (x, reach, indices, squared))
+  Places &ball = placesOfThread ();
+  for (findWithin (x, reach, ball); ball.count < wanted && reach < EVERYWHERE; findWithin (x, reach, ball))
   {
-    const double share = static_cast<double> (wanted) / std::max (1.0, static_cast<double> (indices.size ()));
+    const double share = static_cast<double> (wanted) / std::max (1.0, static_cast<double> (ball.count));
     reach *= std::clamp (MARGIN * std::sqrt (share), 1.3, 4.0);
   }
-  found.resize (indices.size ());
+  found.resize (ball.count);
   for (std::size_t i = 0; i < found.size (); ++i)
-    found[i] = {squared[i], indices[i]};
+    found[i] = {ball.squared[i], static_cast<int> (index_[ball.places[i]])};
   if (found.size () <= wanted)
     return;
   std::nth_element (found.begin (), found.begin () + static_cast<std::ptrdiff_t> (wanted), found.end ());

@@ -154,6 +154,9 @@ private:
       }
   }
 
+  static Places &
+  placesOfThread ();
+
   void
   spanBulk (const std::vector<Eigen::Vector3f> &positions);
 

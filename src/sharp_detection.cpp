@@ -5,6 +5,7 @@
 #include "face_segmentation.h"
 #include "found_nodes.h"
 #include "mesh_graph.h"
+#include "nearby_nodes.h"
 #include "node_table.h"
 #include "noise.h"
 #include "normal_smoothing.h"
@@ -19,9 +20,8 @@
 #include <cmath>
 #include <map>
 #include <memory>
-#include <set>
 #include <string>
-#include <tuple>
+#include <unordered_set>
 #include <utility>
 
 namespace erkpa
@@ -197,17 +197,33 @@ withoutFolds (std::vector<Stretch> stretches, const FoldTest &test, int threads)
   return kept;
 }
 
+/** \brief Two faces and a cell of a grid. */
+using SeparatedCell = std::array<long, 5>;
+
+struct SeparatedCellHash
+{
+  std::size_t
+  operator() (const SeparatedCell &cell) const
+  {
+    constexpr std::size_t ODD = 0x9e3779b97f4a7c15u; // Fibonacci hashing
+    std::size_t hash = 0;
+    for (const long number : cell)
+      hash = (hash ^ static_cast<std::size_t> (number)) * ODD;
+    return hash ^ hash >> 32;
+  }
+};
+
 /** \brief One separation of two faces for each cell of a grid. */
 std::vector<Separation>
 thinOut (const std::vector<Separation> &separations, double cell)
 {
-  std::set<std::tuple<int, int, long, long, long>> taken;
+  std::unordered_set<SeparatedCell, SeparatedCellHash> taken (separations.size ());
   std::vector<Separation> thinned;
   for (const Separation &separation : separations)
   {
     const Eigen::Vector3f place = (separation.position / cell).array ().round ();
     const auto number = [&place] (int axis) { return std::lround (place[axis]); };
-    if (taken.emplace (separation.face, separation.other, number (0), number (1), number (2)).second)
+    if (taken.insert ({separation.face, separation.other, number (0), number (1), number (2)}).second)
       thinned.push_back (separation);
   }
   return thinned;
@@ -258,7 +274,7 @@ gatherStretches (const OrientedPoints &points, const NeighborSearch &search, con
 
 /** \brief Marks the nodes that fits near the stretches can reach: the others need no face. */
 std::vector<char>
-markNear (const OrientedPoints &points, const std::vector<Stretch> &stretches, int threads)
+markNear (const OrientedPoints &points, const PointGrid &nodes, const std::vector<Stretch> &stretches, int threads)
 {
   constexpr double FITS = 3.5; // in reaches, which are about a support radius each
   std::vector<Eigen::Vector3f> places;
@@ -273,12 +289,24 @@ markNear (const OrientedPoints &points, const std::vector<Stretch> &stretches, i
   if (places.empty ())
     return is_near;
   const PointGrid grid (places, reach, threads);
+  const NearbyNodes near (points, nodes);
+  const auto mark = [&] (std::size_t first, std::size_t last)
+  {
+    Eigen::Vector3d center;
+    double radius = 0.0;
+    near.findBall (first, last, center, radius);
+    // Most runs are near as a whole, or not at all.
+    const bool some_may_be = grid.hasWithin (center, reach + radius);
+    const bool all_are = some_may_be && radius < reach && grid.hasWithin (center, reach - radius);
+    for (std::size_t place = first; place < last; ++place)
+    {
+      const auto node = static_cast<std::size_t> (near.nodeAt (place));
+      const auto is_it = [&] { return all_are || grid.hasWithin (points.positions[node].cast<double> (), reach); };
+      is_near[node] = some_may_be && is_it () ? 1 : 0;
+    }
+  };
   parallelRanges (points.size (), threads,
-                  [&] (std::size_t first, std::size_t last)
-                  {
-                    for (std::size_t i = first; i < last; ++i)
-                      is_near[i] = grid.hasWithin (points.positions[i].cast<double> (), reach) ? 1 : 0;
-                  });
+                  [&] (std::size_t first, std::size_t last) { near.visitRuns (first, last, mark); });
   return is_near;
 }
 
@@ -297,7 +325,8 @@ findSharpSurfaces (const OrientedPoints &points, const PointLayout &layout, cons
   const SegmentationOptions segmentation = optionsFor (points, layout, options.angle, threads);
   const FaceSegmentation found = segmentFaces (points, layout, segmentation, threads);
   const std::vector<Stretch> stretches = gatherStretches (points, search, found, segmentation, k, threads);
-  const std::vector<SharpSurface::ConstPtr> faces = makeFaces (points, found, markNear (points, stretches, threads), k);
+  const std::vector<SharpSurface::ConstPtr> faces =
+      makeFaces (points, found, markNear (points, *layout.grid, stretches, threads), k);
   for (const Stretch &stretch : stretches)
   {
     const auto &face = faces[static_cast<std::size_t> (stretch.face)];

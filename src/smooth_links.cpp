@@ -36,8 +36,8 @@ public:
         threads_, [this] { return Worker (*this); },
         [&] (Worker &worker, std::size_t first, std::size_t last, NodeLinks::Lists &lists)
         {
-          visitRuns (worker, first, last,
-                     [&] (std::size_t from, std::size_t to) { linkNear (worker, from, to, is_suspect, lists); });
+          worker.near.visitRuns (
+              first, last, [&] (std::size_t from, std::size_t to) { linkNear (worker, from, to, is_suspect, lists); });
         });
     if (!(far_ > near_))
       return links;
@@ -46,8 +46,9 @@ public:
         threads_, [this] { return Worker (*this); },
         [&] (Worker &worker, std::size_t first, std::size_t last, NodeLinks::Lists &lists)
         {
-          visitRuns (worker, first, last,
-                     [&] (std::size_t from, std::size_t to) { linkFar (worker, from, to, is_wanted, links, lists); });
+          worker.near.visitRuns (first, last,
+                                 [&] (std::size_t from, std::size_t to)
+                                 { linkFar (worker, from, to, is_wanted, links, lists); });
         });
     return links;
   }
@@ -60,18 +61,6 @@ private:
     NearbyNodes near;
     std::vector<std::uint32_t> linked; // of them
   };
-
-  /** \brief Calls visit (first, last) for the runs of places that lie close together. */
-  template <typename VisitT>
-  static void
-  visitRuns (const Worker &worker, std::size_t first, std::size_t last, VisitT visit)
-  {
-    for (std::size_t end = first; first < last; first = end)
-    {
-      end = worker.near.endOfRun (first, last);
-      visit (first, end);
-    }
-  }
 
   void
   linkNear (Worker &worker, std::size_t first, std::size_t last, std::vector<char> &is_suspect,
@@ -141,8 +130,9 @@ private:
         [&] (std::size_t first, std::size_t last)
         {
           Worker worker (*this);
-          visitRuns (worker, first, last,
-                     [&] (std::size_t from, std::size_t to) { mark (worker, from, to, is_suspect, links, marks); });
+          worker.near.visitRuns (first, last,
+                                 [&] (std::size_t from, std::size_t to)
+                                 { mark (worker, from, to, is_suspect, links, marks); });
         },
         STRETCH);
     return {marks.begin (), marks.end ()};
