@@ -158,21 +158,22 @@ FaceMap::addJoints (const OrientedPoints &points, double spacing, std::size_t fi
 {
   constexpr double NEIGHBORS = 4.0; // spacings
   near.gather (first, last, NEIGHBORS * spacing);
-  const int face = faceOf (near.nodeAt (first));
-  bool has_other = false;
+  std::vector<std::pair<int, int>> nodes; // with their faces
   for (std::size_t n = 0; n < near.size (); ++n)
-    has_other = has_other || faceOf (near.node (n)) != face;
-  if (!has_other) // inside a face, as most are
+    if (const int face = faceOf (near.node (n)); face >= 0)
+      nodes.emplace_back (near.node (n), face);
+  const auto is_first = [&nodes] (const auto &node) { return node.second == nodes.front ().second; };
+  if (std::all_of (nodes.begin (), nodes.end (), is_first)) // inside a face, as most are
     return;
   std::vector<int> meetings;
   for (std::size_t place = first; place < last; ++place)
-    for (std::size_t n = 0; n < near.size (); ++n)
-    {
-      const int i = near.nodeAt (place), j = near.node (n);
-      if (j > i && faceOf (i) >= 0 && faceOf (j) >= 0 && faceOf (i) != faceOf (j) &&
-          areJoined (points, i, j, NEIGHBORS * spacing, meetings))
-        joints.push_back ({i, j, middleOf (points, i, j)});
-    }
+  {
+    const int node = near.nodeAt (place), face = faceOf (node);
+    for (const auto &[other, of_other] : nodes)
+      if (face >= 0 && of_other != face && other > node &&
+          areJoined (points, node, other, NEIGHBORS * spacing, meetings))
+        joints.push_back ({node, other, middleOf (points, node, other)});
+  }
 }
 
 /** \brief Whether nodes of two faces are neighbours on one surface where nothing keeps the faces apart. */
