@@ -27,7 +27,7 @@ isPlainModel (const SharpSurfaceParts &parts)
 
 BlockEnrichment::BlockEnrichment (const ImplicitField &field, double unit)
     : field_ (field), inverse_unit_ (1.0 / unit),
-      can_evaluate_ (field.options ().constraint != Constraint::OFFSURFACE &&
+      can_evaluate_ (field.options ().constraint != Constraint::OFFSURFACE && field.options ().flatten >= 1.0 &&
                      (field.options ().order == Order::LINEAR || field.options ().order == Order::SPHERICAL))
 {
   for (const SharpSurface::ConstPtr &surface : field.enrichingSurfaces ())

@@ -23,7 +23,9 @@ BlockFaces::BlockFaces (const ImplicitField &field, const lanes::Engine &engine,
 bool
 BlockFaces::canEvaluate (const ImplicitField &field)
 {
-  return field.supportSize ().kind () == SupportSize::Kind::NEAREST && field.options ().order != Order::CONSTANT;
+  const FieldOptions &options = field.options ();
+  return field.supportSize ().kind () == SupportSize::Kind::NEAREST && options.order != Order::CONSTANT &&
+         options.flatten >= 1.0;
 }
 
 bool

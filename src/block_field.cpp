@@ -32,7 +32,7 @@ bool
 BlockField::canEvaluate (const ImplicitField &field)
 {
   const FieldOptions &options = field.options ();
-  return laneKernelOf (options) && !options.warp && options.flatten >= 1.0 && field.points ().shapes.empty () &&
+  return laneKernelOf (options) && !options.warp && field.points ().shapes.empty () &&
          field.supportSize ().kind () != SupportSize::Kind::PER_NODE && field.supportSize ().typical () > 0.0;
 }
 

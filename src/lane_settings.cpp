@@ -100,6 +100,8 @@ laneSettingsOf (const ImplicitField &field)
   settings.basis = laneBasisOf (field.options ().order);
   settings.constraint = laneConstraintOf (field.options ().constraint);
   settings.kernel = laneKernelOf (field.options ()).value_or (lanes::Kernel::PAPER);
+  const double flatten = field.options ().flatten;
+  settings.stretch = static_cast<float> (1.0 / (flatten * flatten) - 1.0);
   const bool by_nearest = field.supportSize ().kind () == SupportSize::Kind::NEAREST;
   settings.k = by_nearest ? std::min (field.supportSize ().k (), static_cast<int> (field.points ().size ())) : 0;
   settings.min_nodes = static_cast<int> (std::min (Support::MIN_NODES, field.points ().size ()));

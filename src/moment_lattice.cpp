@@ -23,7 +23,7 @@ bool
 canKeepSums (const ImplicitField &field)
 {
   const lanes::Basis basis = laneSettingsOf (field).basis;
-  return BlockField::canEvaluate (field) && field.faces () == nullptr &&
+  return BlockField::canEvaluate (field) && field.faces () == nullptr && field.options ().flatten >= 1.0 &&
          field.supportSize ().kind () == SupportSize::Kind::CONSTANT &&
          (basis == lanes::Basis::LINEAR || basis == lanes::Basis::SPHERICAL);
 }

@@ -141,8 +141,14 @@ private:
     B squared[N], t[N];
     support.template distances<N> (i, squared);
     for (std::size_t n = 0; n < N; ++n)
-      is_on_surface ? reach.count (squared[n]) : reach.countOffSurface (squared[n]);
-    weights.template shares<N> (squared, t);
+      t[n] = squared[n];
+    weights.template stretch<N> (i, t);
+    for (std::size_t n = 0; n < N; ++n)
+      if (!is_on_surface)
+        reach.countOffSurface (t[n]);
+      else
+        weights.areFlattened () ? reach.count (squared[n], t[n]) : reach.count (squared[n]);
+    weights.template shares<N> (t, t);
     weights.template weights<N> (i, t);
     for (std::size_t n = 0; n < N; ++n)
       t[n].store_unaligned (of_weights + WIDTH * n);

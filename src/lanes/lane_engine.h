@@ -228,7 +228,7 @@ evaluateWith (const Settings &settings, const Nodes &nodes, const Points &points
 {
   constexpr bool IS_COMMON = BASIS == Basis::LINEAR || BASIS == Basis::SPHERICAL;
   if constexpr (IS_COMMON)
-    if (settings.kernel == Kernel::PAPER)
+    if (settings.kernel == Kernel::PAPER && settings.stretch == 0.0f)
     {
       evaluateWith<B, BASIS, CONSTRAINT, PaperKernel> (settings, nodes, points, scratch, samples);
       return;

@@ -152,7 +152,7 @@ private:
         {
           B R[SIZE], n[3], of_fit[3];
           const B weight = weights_.weightAt (i, t);
-          TermsT::evaluate (u, t * t, R);
+          TermsT::evaluate (u, weights_.squaredLength (t, u), R);
           const B height = weight * (weights_.lambda (i) * scale_ - combine<TermsT> (c_, R));
           for (int j = 0; j < SIZE; ++j)
             rest[j] = xsimd::fma (height, R[j], rest[j]);
@@ -199,7 +199,7 @@ private:
       for (int a = 0; a < 3; ++a)
         centroid_[a] = xsimd::fma (weight / weight_, d[a], centroid_[a]);
     weights_.normal (i, n);
-    TermsT::evaluate (d, t * t, R);
+    TermsT::evaluate (d, weights_.squaredLength (t, d), R);
     const B share = combine<TermsT> (a_, R);
     B height = weights_.lambda (i) * scale_;
     if constexpr (CONSTRAINT == Constraint::FUNCTIONAL)
@@ -218,8 +218,10 @@ private:
     }
     const B force = weights_.slope (i, t) * residual;
     by_radius = fnma (B (0.5f) * t * t, force, by_radius);
+    B way[3];
+    weights_.steepest (i, d, way);
     for (int a = 0; a < 3; ++a)
-      by_u[a] = xsimd::fma (force, d[a], by_u[a]);
+      by_u[a] = xsimd::fma (force, way[a], by_u[a]);
     if constexpr (CONSTRAINT == Constraint::FUNCTIONAL)
       for (int a = 0; a < 3; ++a)
         direct[a] = xsimd::fma (weight * share, n[a], direct[a]);

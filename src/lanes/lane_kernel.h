@@ -12,6 +12,8 @@ namespace erkpa::lanes
 template <typename B>
 struct PaperKernel
 {
+  static constexpr bool IS_GENERAL = false; ///< whether supports may be flattened
+
   explicit PaperKernel (Kernel) {}
 
   B
@@ -57,6 +59,8 @@ template <typename B>
 class AnyKernel
 {
 public:
+  static constexpr bool IS_GENERAL = true;
+
   explicit AnyKernel (Kernel kernel) : kernel_ (kernel) {}
 
   B

@@ -76,7 +76,9 @@ public:
     {
       B R[TermsT::SIZE], away (0.0f);
       const B slope = weights_.slope (i, t), squared = t * t;
-      TermsT::evaluate (d, squared, R);
+      B way[3];
+      weights_.steepest (i, d, way);
+      TermsT::evaluate (d, weights_.squaredLength (t, d), R);
       const B height = combine<TermsT> (v, R), squared_height = height * height;
       for (int a = 0; a < 3; ++a)
       {
@@ -85,7 +87,7 @@ public:
       }
       for (int a = 0; a < 3; ++a)
       {
-        const B change = slope * xsimd::fma (squared, radius_gradient_[a], d[a]);
+        const B change = slope * xsimd::fma (squared, radius_gradient_[a], way[a]);
         by_pivot[a] = fnma (change, squared_height, by_pivot[a]);
         by_spread[a] = fnma (change, away, by_spread[a]);
       }

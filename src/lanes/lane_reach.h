@@ -36,10 +36,19 @@ public:
     nearest_ = xsimd::min (nearest_, squared);
   }
 
+  /** \brief The same where the support is flattened. \param[in] stretched the square by which the node is weighed */
   void
-  countOffSurface (B squared)
+  count (B squared, B stretched)
   {
-    in_support_.add (squared < squared_radius_);
+    countOffSurface (stretched);
+    in_quarter_.add (squared <= squared_reach_ && stretched < squared_radius_);
+    nearest_ = xsimd::min (nearest_, squared);
+  }
+
+  void
+  countOffSurface (B stretched)
+  {
+    in_support_.add (stretched < squared_radius_);
   }
 
   /** \brief The nodes counted so far were all of those on the surface. */

@@ -70,9 +70,10 @@ private:
     weights_.visitNodes (
         [&] (std::size_t i, B, B t, const B *u)
         {
-          B R[TermsT::SIZE], slopes[3];
+          B R[TermsT::SIZE], slopes[3], way[3];
           const B squared = t * t;
-          TermsT::evaluate (u, squared, R);
+          weights_.steepest (i, u, way);
+          TermsT::evaluate (u, weights_.squaredLength (t, u), R);
           B held = combine<TermsT> (v, R); // of v^T M v by the node's weight
           held *= held;
           if constexpr (CONSTRAINT == Constraint::HERMITE)
@@ -85,7 +86,7 @@ private:
           const B slope = weights_.slope (i, t);
           for (int a = 0; a < 3; ++a)
           {
-            const B change = slope * xsimd::fma (squared, radius_gradient_[a], u[a]);
+            const B change = slope * xsimd::fma (squared, radius_gradient_[a], way[a]);
             of_pivot[a] = fnma (change, held, of_pivot[a]);
             of_weight[a] -= change;
           }

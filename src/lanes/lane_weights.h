@@ -42,8 +42,53 @@ public:
   LaneWeights (const Settings &settings, const LaneSupport<B> &support)
       : support_ (support), lambda_ (support.near (LaneSupport<B>::LAMBDA)),
         confidence_ (support.near (LaneSupport<B>::CONFIDENCE)), kernel_ (settings.kernel),
-        quarter_ (B (0.25f) * support.inverse () * support.inverse ())
+        quarter_ (B (0.25f) * support.inverse () * support.inverse ()), stretch_ (settings.stretch)
   {
+  }
+
+  /** \brief Whether the supports of nodes are flattened: t is not |u| then. */
+  bool
+  areFlattened () const
+  {
+    return KernelT<B>::IS_GENERAL && stretch_ > 0.0f;
+  }
+
+  /** \brief From |x_i - x|² of N nodes from the i-th to visit on to the squares by which they are weighed. */
+  template <std::size_t N>
+  [[gnu::always_inline]] void
+  stretch (std::size_t i, B *squared) const
+  {
+    if (!areFlattened ())
+      return;
+    for (std::size_t n = 0; n < N; ++n)
+    {
+      B d[3], along[3];
+      support_.offset (i + n, d);
+      normal (i + n, along);
+      const B height = dot (d, along);
+      squared[n] = xsimd::fma (B (stretch_) * height, height, squared[n]);
+    }
+  }
+
+  /** \brief The direction in which t of a node grows: u, longer along its normal where supports are flattened. */
+  void
+  steepest (std::size_t i, const B *u, B *way) const
+  {
+    B along[3], more (0.0f);
+    if (areFlattened ())
+    {
+      normal (i, along);
+      more = B (stretch_) * dot (u, along);
+    }
+    for (int a = 0; a < 3; ++a)
+      way[a] = areFlattened () ? xsimd::fma (more, along[a], u[a]) : u[a];
+  }
+
+  /** \brief |u|². */
+  B
+  squaredLength (B t, const B *u) const
+  {
+    return areFlattened () ? dot (u, u) : t * t;
   }
 
   /** \brief Calls visit (i, |x_i - x|², t, u) for each node to visit, u = (x_i - x) / ε; t is 1 beyond the support.
@@ -148,7 +193,10 @@ private:
   {
     B squared[N], t[N];
     support_.template distances<N> (i, squared);
-    shares<N> (squared, t);
+    for (std::size_t n = 0; n < N; ++n)
+      t[n] = squared[n];
+    stretch<N> (i, t);
+    shares<N> (t, t);
     const B scale = support_.inverse ();
     for (std::size_t n = 0; n < N; ++n)
     {
@@ -169,7 +217,8 @@ private:
   const LaneSupport<B> &support_;
   const float *lambda_, *confidence_;
   KernelT<B> kernel_;
-  B quarter_; // 1 / (4 ε²)
+  B quarter_;     // 1 / (4 ε²)
+  float stretch_; // see Settings
 };
 
 } // namespace erkpa::lanes

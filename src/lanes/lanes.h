@@ -51,6 +51,7 @@ struct Settings
   Kernel kernel;
   int k;             ///< ε(x) = distance to the k-th nearest node; 0: Points::radius says it
   bool limited;      ///< where fewer than k nodes lie within Points::radius, that is ε(x)
+  float stretch;     ///< 1/F² - 1, where supports reach a share F of ε along the normals of nodes; 0: as far
   bool gradients;    ///< ∇f, border offsets and attributes as well
   float reach;       ///< a point is in reach of the data where a quarter of its nodes lie within reach · ε + offset,
   float offset;      ///< or ...
