@@ -38,15 +38,20 @@ using Triangle = std::array<int, 3>;
 
 /** \brief Lengths of the box around the nodes. */
 Eigen::Vector3d
-extentOf (const ImplicitField &field)
+extentOf (const ImplicitField &field, int threads)
 {
-  Eigen::Vector3f low = field.surfacePositions ().front (), high = low;
-  for (const Eigen::Vector3f &p : field.surfacePositions ())
-  {
-    low = low.cwiseMin (p);
-    high = high.cwiseMax (p);
-  }
-  return (high - low).cast<double> ();
+  using Boxes = std::vector<Eigen::AlignedBox3f>;
+  const std::vector<Eigen::Vector3f> &nodes = field.surfacePositions ();
+  Eigen::AlignedBox3f box;
+  for (const Eigen::AlignedBox3f &part : parallelCollect<Boxes> (nodes.size (), threads,
+                                                                 [&] (std::size_t first, std::size_t last, Boxes &boxes)
+                                                                 {
+                                                                   boxes.emplace_back ();
+                                                                   for (std::size_t i = first; i < last; ++i)
+                                                                     boxes.back ().extend (nodes[i]);
+                                                                 }))
+    box.extend (part);
+  return box.sizes ().cast<double> ();
 }
 
 Outcome
@@ -81,11 +86,11 @@ meshCentered (const LargeVector<CellLoop> &loops, LargeVector<Triangle> &triangl
 }
 
 Outcome
-noSurface (const ImplicitField &field, double voxel, std::size_t dropped)
+noSurface (const ImplicitField &field, int threads, double voxel, std::size_t dropped)
 {
   std::string why = "no surface was found at the points: the support may hold too few of them (use a larger k or "
                     "radius), or the iso level may lie beyond them";
-  if (voxel > 0.5 * extentOf (field).maxCoeff ())
+  if (voxel > 0.5 * extentOf (field, threads).maxCoeff ())
     why = "no surface was found: the voxel of " + toText (voxel) + " is as large as the cloud, use a smaller one";
   else if (dropped > 0)
     why = "only small pieces of surface were found, which too few points support: are these points of a surface?";
@@ -184,12 +189,12 @@ toInputFrame (const OrientedPoints &points, int threads, const SurfaceVertices &
 }
 
 Outcome
-followSurface (SurfaceTracker &tracker, SparseGrid &grid, PolygonizerReport &report)
+followSurface (const PolygonizerOptions &options, SurfaceTracker &tracker, SparseGrid &grid, PolygonizerReport &report)
 {
   const StageClock clock (report.seconds_grid);
   Outcome outcome = tracker.track ();
   if (outcome.ok ())
-    grid.markCutEdges ();
+    grid.markCutEdges (options.threads);
   return outcome;
 }
 
@@ -254,7 +259,7 @@ meshField (const ImplicitField &field, const PolygonizerOptions &options, Surfac
   SparseGrid grid (-voxel * Eigen::Vector3d (0.371, 0.437, 0.293), voxel);
   const std::unique_ptr<MomentLattice> lattice = MomentLattice::make (field, options, voxel);
   SurfaceTracker tracker (field, options, lattice.get (), grid, report, partOf (progress, 0.0, 0.5));
-  const Outcome outcome = followSurface (tracker, grid, report);
+  const Outcome outcome = followSurface (options, tracker, grid, report);
   report.moment_sums = lattice != nullptr ? lattice->size () : 0;
   if (!outcome.ok ())
     return outcome;
@@ -263,7 +268,7 @@ meshField (const ImplicitField &field, const PolygonizerOptions &options, Surfac
     placeVertices (field, options, lattice.get (), grid, vertices, report, partOf (progress, 0.5, 0.5));
   }
   triangles = meshSurface (field, options, lattice.get (), grid, tracker, vertices, creases, report);
-  return triangles.empty () ? noSurface (field, voxel, report.dropped_components) : Outcome ();
+  return triangles.empty () ? noSurface (field, options.threads, voxel, report.dropped_components) : Outcome ();
 }
 
 } // namespace
@@ -274,7 +279,7 @@ chooseVoxelSize (const ImplicitField &field, const PolygonizerOptions &options)
   if (options.voxel_size > 0.0)
     return options.voxel_size;
   if (options.resolution > 0)
-    return extentOf (field).maxCoeff () / options.resolution;
+    return extentOf (field, options.threads).maxCoeff () / options.resolution;
   // A grid node further from the surface than supports reach would see no field.
   constexpr double OF_FLATTENED = 0.3;
   const double flatten = field.options ().flatten;
@@ -293,7 +298,7 @@ polygonize (const ImplicitField &field, const PolygonizerOptions &options, Trian
   if (!outcome.ok ())
     return outcome;
   const double voxel = report.voxel_size = chooseVoxelSize (field, options);
-  const double cells = extentOf (field).maxCoeff () / voxel;
+  const double cells = extentOf (field, options.threads).maxCoeff () / voxel;
   if (!(cells < SparseGrid::LIMIT))
     return {Status::GRID_TOO_FINE,
             "a voxel of " + toText (voxel) + " is too small for the extent of the cloud: use a larger voxel size"};

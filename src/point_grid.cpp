@@ -4,6 +4,7 @@
 #include "threads.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <utility>
 
@@ -106,38 +107,28 @@ void
 PointGrid::sortIntoCells (const std::vector<Eigen::Vector3f> &positions, int threads)
 {
   const std::size_t n = positions.size ();
-  LargeVector<std::uint32_t> bricks (n);
-  LargeVector<std::uint16_t> cells (n);
+  CellsOfPoints of_points{LargeVector<std::uint32_t> (n), LargeVector<std::uint16_t> (n)};
   parallelRanges (n, threads,
                   [&] (std::size_t first, std::size_t last)
                   {
                     for (std::size_t i = first; i < last; ++i)
                     {
                       const Cell c = cellOf (positions[i].cast<double> ().array ());
-                      bricks[i] = static_cast<std::uint32_t> (brickIndex ({c[0] >> 3, c[1] >> 3, c[2] >> 3}));
-                      cells[i] = static_cast<std::uint16_t> ((c[0] & 7) + 8 * ((c[1] & 7) + 8 * (c[2] & 7)));
+                      of_points.bricks[i] = static_cast<std::uint32_t> (brickIndex ({c[0] >> 3, c[1] >> 3, c[2] >> 3}));
+                      of_points.cells[i] = static_cast<std::uint16_t> ((c[0] & 7) + 8 * ((c[1] & 7) + 8 * (c[2] & 7)));
                     }
                   });
   slots_.assign (brickIndex ({0, 0, bricks_[2]}), NONE);
-  for (const std::uint32_t brick : bricks)
+  for (const std::uint32_t brick : of_points.bricks)
     slots_[brick] = 0;
   std::uint32_t used = 0;
   for (std::uint32_t &slot : slots_)
     if (slot != NONE)
       slot = used++;
-  const auto cell_of = [&] (std::size_t i) { return std::size_t (512) * slots_[bricks[i]] + cells[i]; };
-  starts_.assign (std::size_t (512) * used + 1, 0);
-  for (std::size_t i = 0; i < n; ++i)
-    ++starts_[cell_of (i)];
-  std::uint32_t sum = 0;
-  for (std::uint32_t &start : starts_)
-    sum += std::exchange (start, sum);
+  starts_.resize (std::size_t (512) * used + 1);
+  starts_.back () = static_cast<std::uint32_t> (n);
   index_.resize (n);
-  for (std::size_t i = 0; i < n; ++i)
-    index_[starts_[cell_of (i)]++] = static_cast<std::uint32_t> (i);
-  for (std::size_t c = starts_.size () - 1; c > 0; --c) // each start has moved to the next one
-    starts_[c] = starts_[c - 1];
-  starts_[0] = 0;
+  sortByBricks (of_points, used, threads);
   for (LargeVector<float> &coordinates : coordinates_)
     coordinates.resize (n);
   parallelRanges (n, threads,
@@ -147,6 +138,74 @@ PointGrid::sortIntoCells (const std::vector<Eigen::Vector3f> &positions, int thr
                       for (int a = 0; a < 3; ++a)
                         coordinates_[static_cast<std::size_t> (a)][place] = positions[index_[place]][a];
                   });
+}
+
+/** \brief Counting sort in two passes: into runs of bricks, which threads then sort one by one, each within a cache.
+ *
+ * Points of one cell stay in their order.
+ */
+void
+PointGrid::sortByBricks (const CellsOfPoints &of_points, std::size_t used, int threads)
+{
+  constexpr std::size_t RUNS = 64, STRETCH = 16384;
+  const std::size_t n = of_points.bricks.size (), stretches = (n + STRETCH - 1) / STRETCH;
+  const std::size_t per_run = used / RUNS + 1;
+  std::vector<std::array<std::uint32_t, RUNS>> places (stretches); // how many, then where they go
+  const auto visit_stretches = [&] (auto visit)
+  {
+    parallelRanges (
+        n, threads,
+        [&] (std::size_t first, std::size_t last)
+        {
+          auto &of_stretch = places[first / STRETCH];
+          for (std::size_t i = first; i < last; ++i)
+            visit (i, of_stretch[slots_[of_points.bricks[i]] / per_run]);
+        },
+        STRETCH);
+  };
+  for (auto &of_stretch : places)
+    of_stretch.fill (0);
+  visit_stretches ([] (std::size_t, std::uint32_t &count) { ++count; });
+  std::array<std::uint32_t, RUNS + 1> firsts{};
+  std::uint32_t sum = 0;
+  for (std::size_t run = 0; run < RUNS; ++run)
+  {
+    for (auto &of_stretch : places)
+      sum += std::exchange (of_stretch[run], sum);
+    firsts[run + 1] = sum;
+  }
+  LargeVector<std::uint32_t> order (n);
+  visit_stretches ([&order] (std::size_t i, std::uint32_t &place) { order[place++] = static_cast<std::uint32_t> (i); });
+  parallelFor (
+      RUNS, threads, [] { return 0; },
+      [&] (int, std::size_t run)
+      {
+        const std::size_t first_cell = 512 * std::min (used, run * per_run);
+        const std::size_t last_cell = 512 * std::min (used, (run + 1) * per_run);
+        sortRun (of_points, order.data () + firsts[run], order.data () + firsts[run + 1], firsts[run],
+                 starts_.data () + first_cell, starts_.data () + last_cell);
+      });
+}
+
+/** \brief Sorts the points of a run of bricks into their cells. \param[in] place of the first of them */
+void
+PointGrid::sortRun (const CellsOfPoints &of_points, const std::uint32_t *first, const std::uint32_t *last,
+                    std::uint32_t place, std::uint32_t *first_cell, std::uint32_t *last_cell)
+{
+  const auto start_of = [&] (std::uint32_t i) -> std::uint32_t &
+  { return starts_[std::size_t (512) * slots_[of_points.bricks[i]] + of_points.cells[i]]; };
+  std::fill (first_cell, last_cell, 0);
+  for (const std::uint32_t *i = first; i != last; ++i)
+    ++start_of (*i);
+  std::uint32_t sum = place;
+  for (std::uint32_t *start = first_cell; start != last_cell; ++start)
+    sum += std::exchange (*start, sum);
+  for (const std::uint32_t *i = first; i != last; ++i)
+    index_[start_of (*i)++] = *i;
+  if (first_cell == last_cell)
+    return;
+  std::copy_backward (first_cell, last_cell - 1, last_cell); // each start has moved to the next one
+  *first_cell = place;
 }
 
 bool

@@ -160,8 +160,22 @@ private:
   void
   spanBulk (const std::vector<Eigen::Vector3f> &positions);
 
+  /** \brief The brick of each point, and its cell there. */
+  struct CellsOfPoints
+  {
+    LargeVector<std::uint32_t> bricks;
+    LargeVector<std::uint16_t> cells;
+  };
+
   void
   sortIntoCells (const std::vector<Eigen::Vector3f> &positions, int threads);
+
+  void
+  sortByBricks (const CellsOfPoints &of_points, std::size_t used, int threads);
+
+  void
+  sortRun (const CellsOfPoints &of_points, const std::uint32_t *first, const std::uint32_t *last, std::uint32_t place,
+           std::uint32_t *first_cell, std::uint32_t *last_cell);
 
   double cell_ = 1.0, inverse_ = 1.0;
   Eigen::Array3d low_ = Eigen::Array3d::Zero ();

@@ -3,6 +3,8 @@
 
 #include "parallel_collect.h"
 
+#include <erkpa/large_pages.h>
+
 #include <algorithm>
 #include <cstdint>
 #include <cstring>
@@ -96,7 +98,7 @@ public:
 private:
   std::size_t groups_ = 1;
   std::vector<std::size_t> firsts_;
-  std::vector<Digest> digests_;
+  LargeVector<Digest> digests_;
 };
 
 /** \brief Finds the positions of a group that repeat an earlier one. */

@@ -2,6 +2,7 @@
 #include "sparse_grid.h"
 
 #include "grid_bits.h"
+#include "threads.h"
 
 namespace erkpa
 {
@@ -58,7 +59,7 @@ SparseGrid::keyOf (const GridPoint &point)
 int
 SparseGrid::placeBlock (const GridPoint &first)
 {
-  const auto [entry, is_new] = index_.try_emplace (keyOf (first), blockCount ());
+  const auto [index, is_new] = index_.insert (keyOf (first), blockCount ());
   if (is_new)
   {
     if (static_cast<std::size_t> (block_count_) == CHUNK * chunks_.size ())
@@ -68,9 +69,9 @@ SparseGrid::placeBlock (const GridPoint &first)
     made.first = first;
     made.above.fill (-1);
     made.below.fill (-1);
-    made.above[0] = entry->second;
+    made.above[0] = index;
   }
-  return entry->second;
+  return index;
 }
 
 int
@@ -105,8 +106,7 @@ SparseGrid::placeBelow (int block, int axis)
 GridPlace
 SparseGrid::find (const GridPoint &point) const
 {
-  const auto entry = index_.find (keyOf (point));
-  return {entry == index_.end () ? -1 : entry->second, localOf (point)};
+  return {index_.find (keyOf (point)), localOf (point)};
 }
 
 GridPlace
@@ -138,34 +138,57 @@ SparseGrid::cornerValues (const GridPlace &cell) const
 }
 
 void
-SparseGrid::markCutEdges ()
+SparseGrid::markCutEdges (int threads)
 {
-  const int blocks = blockCount (); // all corners of active cells have theirs
-  for (int index = 0; index < blocks; ++index)
+  constexpr std::size_t STRETCH = 1024;
+  const auto for_blocks = [&] (auto visit)
   {
-    const std::uint64_t active = block (index).active;
-    for (int axis = 0; axis < 3 && active != 0; ++axis)
-    {
-      const auto nodes = grid_bits::cornersOf (active, 7 ^ 1 << axis);
-      for (int above = 0; above < 8; ++above)
-        if (nodes[static_cast<std::size_t> (above)] != 0)
-          block (placeAbove (index, above)).cut[static_cast<std::size_t> (axis)] |=
-              nodes[static_cast<std::size_t> (above)];
-    }
-  }
-  for (int index = 0; index < blocks; ++index)
-    for (int axis = 0; axis < 3; ++axis)
-    {
-      GridBlock &block = this->block (index);
-      std::uint64_t &cut = block.cut[static_cast<std::size_t> (axis)];
-      std::uint64_t ends = grid_bits::down (block.inside, axis);
-      if (cut & grid_bits::LAST[axis])
+    parallelRanges (
+        static_cast<std::size_t> (blockCount ()), threads,
+        [&] (std::size_t first, std::size_t last)
+        {
+          for (std::size_t index = first; index < last; ++index)
+            visit (block (static_cast<int> (index)));
+        },
+        STRETCH);
+  };
+  for_blocks ([this] (const GridBlock &block) { markEdgesOf (block); });
+  for_blocks (
+      [this] (GridBlock &block)
       {
-        const int above = placeAbove (index, 1 << axis); // is there: see above
-        ends |= grid_bits::intoBelow (this->block (above).inside, axis);
-      }
-      cut &= block.inside ^ ends;
-    }
+        for (int axis = 0; axis < 3; ++axis)
+        {
+          std::uint64_t &cut = block.cut[static_cast<std::size_t> (axis)];
+          std::uint64_t ends = grid_bits::down (block.inside, axis);
+          if (cut & grid_bits::LAST[axis])
+            ends |= grid_bits::intoBelow (this->block (blockAbove (block, axis)).inside, axis);
+          cut &= block.inside ^ ends;
+        }
+      });
+}
+
+/** \brief The block beyond the last edges of a block along an axis, which is there if these are of active cells. */
+int
+SparseGrid::blockAbove (const GridBlock &block, int axis) const
+{
+  const int known = block.above[std::size_t (1) << axis];
+  const GridPoint offset = cornerOffset (1 << axis), by{4 * offset.x, 4 * offset.y, 4 * offset.z};
+  return known >= 0 ? known : find (block.first + by).block;
+}
+
+/** \brief Mark the edges of the active cells of a block, cut or not; blocks beside it may be marked by other threads.
+ */
+void
+SparseGrid::markEdgesOf (const GridBlock &from)
+{
+  for (int axis = 0; axis < 3 && from.active != 0; ++axis)
+  {
+    const auto nodes = grid_bits::cornersOf (from.active, 7 ^ 1 << axis);
+    for (std::size_t above = 0; above < 8; ++above)
+      if (nodes[above] != 0) // the corners of active cells are known, and so are their blocks
+        __atomic_fetch_or (&block (from.above[above]).cut[static_cast<std::size_t> (axis)], nodes[above],
+                           __ATOMIC_RELAXED);
+  }
 }
 
 int

@@ -1,13 +1,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include "block_index.h"
+
 #include <erkpa/large_pages.h>
 
 #include <Eigen/Core>
 
 #include <array>
 #include <cstdint>
-#include <unordered_map>
 #include <vector>
 
 namespace erkpa
@@ -216,7 +217,7 @@ public:
 
   /** \brief Mark the edges of active cells on which the values change their sign: they carry the vertices. */
   void
-  markCutEdges ();
+  markCutEdges (int threads);
 
   /** \brief Number the cut edges, block after block; returns how many there are. */
   int
@@ -246,6 +247,12 @@ public:
   }
 
 private:
+  void
+  markEdgesOf (const GridBlock &from);
+
+  int
+  blockAbove (const GridBlock &block, int axis) const;
+
   static constexpr std::size_t CHUNK = 4096; // blocks
 
   static std::uint64_t
@@ -261,7 +268,7 @@ private:
   double voxel_size_, cells_per_length_;
   int block_count_ = 0;
   std::vector<LargeVector<GridBlock>> chunks_; // of a fixed size: blocks stay where they are when others are made
-  std::unordered_map<std::uint64_t, int> index_;
+  BlockIndex index_;
 };
 
 /** \brief A cube of nodes of a block that share one gathering of the field's nodes. */
