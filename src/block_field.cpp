@@ -43,7 +43,7 @@ BlockField::BlockField (const ImplicitField &field, const lanes::Engine &engine,
       plain_ (static_cast<std::size_t> (field.points ().channels), termsOf (settings_.basis),
               field.faces () != nullptr),
       enriched_ (static_cast<std::size_t> (field.points ().channels), 0, field.faces () != nullptr),
-      interpolated_ (static_cast<std::size_t> (field.points ().channels), termsOf (settings_.basis), false),
+      interpolated_ (static_cast<std::size_t> (field.points ().channels), 0, false),
       lattice_ (lattice, engine, static_cast<std::size_t> (field.points ().channels))
 {
   setReach (1.0, 0.0, 0.0);
@@ -61,6 +61,7 @@ bool
 BlockField::gather (const Eigen::Vector3d &center, double extent, bool on_surface)
 {
   clearPoints ();
+  lattice_.clear ();
   if (!can_evaluate_)
     return false;
   // A middle that floats can say: then differences from it are exact.
@@ -311,23 +312,20 @@ BlockField::addSketchPoint (const Eigen::Vector3d &x)
 {
   if (settings_.constraint == lanes::Constraint::FUNCTIONAL || settings_.basis == lanes::Basis::CONSTANT)
     return false;
-  const bool is_covered = lattice_.covers (x);
-  BlockPoints &points = is_covered ? interpolated_ : plain_;
-  places_.push_back ({is_covered ? Kind::INTERPOLATED : Kind::PLAIN, static_cast<std::uint32_t> (points.size ()), -1});
-  points.add (((x - center_) * inverse_unit_).cast<float> ());
+  places_.push_back ({Kind::PLAIN, static_cast<std::uint32_t> (plain_.size ()), -1});
+  plain_.add (((x - center_) * inverse_unit_).cast<float> ());
   return true;
 }
 
 bool
 BlockField::sketch (std::size_t point, FieldSketch &sketch) const
 {
-  const BlockPoints &points = at (point);
   const std::size_t i = placeOf (point);
-  if (points.states[i] != lanes::State::DEFINED)
+  if (plain_.states[i] != lanes::State::DEFINED)
     return false;
-  const auto coefficient = [&] (std::size_t j) { return unit_ * static_cast<double> (points.coefficient (i, j)); };
-  const double radius = unit_ * static_cast<double> (points.radii[i]);
-  sketch.x = center_ + unit_ * points.position (i).cast<double> ();
+  const auto coefficient = [&] (std::size_t j) { return unit_ * static_cast<double> (plain_.coefficient (i, j)); };
+  const double radius = unit_ * static_cast<double> (plain_.radii[i]);
+  sketch.x = center_ + unit_ * plain_.position (i).cast<double> ();
   sketch.value = coefficient (0);
   sketch.slope = Eigen::Vector3d (coefficient (1), coefficient (2), coefficient (3)) / radius;
   sketch.bend = settings_.basis == lanes::Basis::SPHERICAL ? coefficient (4) / (radius * radius) : 0.0;

@@ -15,6 +15,11 @@ BlockLattice::covers (const Eigen::Vector3d &x)
 {
   if (lattice_ == nullptr)
     return false;
+  // Next to a plane of the lattice floats may say the other cell, and the gradient is not that of both.
+  constexpr double CLEAR = 1e-5;
+  const Eigen::Array3d along = x.array () / lattice_->spacing (), share = along - along.floor ();
+  if ((share < CLEAR).any () || (share > 1.0 - CLEAR).any ())
+    return false;
   const Eigen::Array3i cell = lattice_->cellOf (x);
   if (last_ == nullptr || ((cell - last_->first) < 0).any () || ((cell - last_->first) >= MomentLattice::SIDE).any ())
     last_ = lattice_->brickOf (cell);

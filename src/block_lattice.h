@@ -23,6 +23,13 @@ public:
   {
   }
 
+  /** \brief Forget the points of the ball before. */
+  void
+  clear ()
+  {
+    box_ = Box ();
+  }
+
   /** \brief Whether the moments at a point (local frame) can be interpolated. */
   bool
   covers (const Eigen::Vector3d &x);

@@ -185,7 +185,7 @@ FaceMap::areJoined (const OrientedPoints &points, int i, int j, double reach, st
   const auto one = static_cast<std::size_t> (i), two = static_cast<std::size_t> (j);
   const Eigen::Vector3f way = points.positions[two] - points.positions[one];
   const Eigen::Vector3f &normal = points.normals[one], &other = points.normals[two];
-  if (static_cast<double> (way.norm ()) > reach || normal.dot (other) < LEAST_COSINE ||
+  if (way.squaredNorm () > static_cast<float> (reach * reach) || normal.dot (other) < LEAST_COSINE ||
       0.5f * std::abs (way.dot (normal + other)) > BEND * way.norm ())
     return false;
   const Eigen::Vector3f middle = middleOf (points, i, j);

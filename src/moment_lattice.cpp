@@ -22,22 +22,25 @@ namespace
 bool
 canKeepSums (const ImplicitField &field)
 {
-  const lanes::Basis basis = laneSettingsOf (field).basis;
-  return BlockField::canEvaluate (field) && field.faces () == nullptr && field.options ().flatten >= 1.0 &&
+  const FieldOptions &options = field.options ();
+  // Squares with functional values ask for the nodes nearly everywhere. Values of collocation are those of exact sums.
+  return BlockField::canEvaluate (field) && field.faces () == nullptr && options.flatten >= 1.0 &&
          field.supportSize ().kind () == SupportSize::Kind::CONSTANT &&
-         (basis == lanes::Basis::LINEAR || basis == lanes::Basis::SPHERICAL);
+         options.interpolation != Interpolation::COLLOCATION &&
+         (options.order == Order::LINEAR ||
+          (options.order == Order::SPHERICAL && options.constraint != Constraint::FUNCTIONAL));
 }
 
-/** \brief The fewest cells of the lattice along a support radius that leave weights no farther off than \a tolerance.
- */
+/** \brief The fewest cells of the lattice along a support radius that leave weights no farther off than \a tolerance; 0
+ * where none do. */
 double
 cellsPerRadius (const Kernel &kernel, double tolerance)
 {
-  constexpr double FEWEST = 4.0, MOST = 256.0;
-  double cells = FEWEST;
-  while (cells < MOST && MomentLattice::errorOf (kernel, cells) > tolerance)
-    cells += 0.25;
-  return cells;
+  constexpr double FEWEST = 4.0, MOST = 64.0;
+  for (double cells = FEWEST; cells <= MOST; cells += 0.25)
+    if (MomentLattice::errorOf (kernel, cells) <= tolerance)
+      return cells;
+  return 0.0;
 }
 
 /** \brief The lowest cell of the brick of a cell. */
@@ -96,13 +99,17 @@ std::unique_ptr<MomentLattice>
 MomentLattice::make (const ImplicitField &field, const PolygonizerOptions &options, double voxel_size,
                      const lanes::Engine &engine)
 {
-  constexpr double FEWEST_NODES = 200.0; // in a support: fewer are summed up as quickly as points of the lattice
-  constexpr double LEAST = 1.5;          // voxels
+  // With fewer nodes in a support, sums over them take no longer, and far off the nodes they are asked for anyway: both
+  // were measured.
+  constexpr double FEWEST_NODES = 600.0, FARTHEST = 0.2;
+  constexpr double LEAST = 1.5; // voxels
   if (!(options.moment_tolerance > 0.0) || !canKeepSums (field))
     return nullptr;
   const double radius = field.typicalRadius (), in_spacings = radius / field.spacing ();
-  const double spacing = radius / cellsPerRadius (field.kernel (), options.moment_tolerance);
-  if (!(M_PI * in_spacings * in_spacings >= FEWEST_NODES) || spacing < LEAST * voxel_size)
+  const double cells = cellsPerRadius (field.kernel (), options.moment_tolerance);
+  const double spacing = cells > 0.0 ? radius / cells : 0.0;
+  if (!(M_PI * in_spacings * in_spacings >= FEWEST_NODES) || std::abs (options.iso_level) > FARTHEST * radius ||
+      spacing < LEAST * voxel_size)
     return nullptr;
   return std::unique_ptr<MomentLattice> (new MomentLattice (field, options, spacing, engine));
 }

@@ -44,6 +44,7 @@ public:
   };
 
   /** \brief A lattice, without sums, for the evaluations of a grid; null where the nodes serve as well or must serve.
+   * \param[in] field,options must live as long as it does
    */
   static std::unique_ptr<MomentLattice>
   make (const ImplicitField &field, const PolygonizerOptions &options, double voxel_size,

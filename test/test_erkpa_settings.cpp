@@ -165,11 +165,13 @@ TEST (Erkpa, RemembersEverySetting)
   erkpa.setFlatten (0.5);
   erkpa.setRadiusRamp ({2, 0.1, 0.2});
   erkpa.setConfidenceField ("trust");
+  erkpa.setMomentTolerance (0.002);
   EXPECT_EQ (erkpa.getOffset (), 0.3);
   EXPECT_EQ (erkpa.getEnrichment (), erkpa::EnrichmentType::JUMP);
   EXPECT_EQ (erkpa.getConstraint (), erkpa::Constraint::FUNCTIONAL);
   EXPECT_EQ (erkpa.getKernel (), erkpa::KernelType::GAUSSIAN);
   EXPECT_EQ (erkpa.getFlatten (), 0.5);
+  EXPECT_EQ (erkpa.getMomentTolerance (), 0.002);
   EXPECT_EQ (erkpa.getRadiusRamp ().axis, 2);
   EXPECT_EQ (erkpa.getConfidenceField (), "trust");
   EXPECT_EQ (erkpa.getOptions ().points.confidence_field, "trust");

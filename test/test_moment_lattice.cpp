@@ -175,7 +175,7 @@ TEST_F (MomentLatticeTest, InterpolatedWeightsAreOffByNoMoreThanIsStated)
 
 TEST_F (MomentLatticeTest, TheFieldIsThatOfTheNodesForEveryInstructionSetBasisAndConstraint)
 {
-  const auto points = shapes::points (bumpyBall (6000));
+  const auto points = shapes::points (bumpyBall (20000));
   for (const Order order : {Order::LINEAR, Order::SPHERICAL})
     for (const Constraint constraint : {Constraint::HERMITE, Constraint::OFFSURFACE, Constraint::FUNCTIONAL})
     {
@@ -191,7 +191,7 @@ TEST_F (MomentLatticeTest, TheFieldIsThatOfTheNodesForEveryInstructionSetBasisAn
 
 TEST_F (MomentLatticeTest, TheFieldIsThatOfTheNodesForEveryKernelWithConfidencesAndAttributes)
 {
-  const auto points = shapes::points (bumpyBall (6000));
+  const auto points = shapes::points (bumpyBall (12000));
   points->channels = 2;
   for (const Eigen::Vector3f &p : points->positions)
   {
@@ -209,7 +209,7 @@ TEST_F (MomentLatticeTest, TheFieldIsThatOfTheNodesForEveryKernelWithConfidences
 
 TEST_F (MomentLatticeTest, ASphereIsReproducedHoweverCoarseTheLattice)
 {
-  const auto field = shapes::field (shapes::sphere (5000), optionsOf (Order::SPHERICAL, 0, 0.5));
+  const auto field = shapes::field (shapes::sphere (12000), optionsOf (Order::SPHERICAL, 0, 0.5));
   const std::vector<Vector3d> points = pointsNear (*field, 7);
   const auto lattice = latticeAt (*field, withTolerance (0.03), points);
   ASSERT_NE (lattice, nullptr);
@@ -232,7 +232,7 @@ TEST_F (MomentLatticeTest, TheGradientIsThatOfTheInterpolatedField)
   {
     FieldOptions options = optionsOf (Order::LINEAR, 0, 0.4);
     options.constraint = constraint;
-    const auto field = shapes::field (bumpyBall (6000), options);
+    const auto field = shapes::field (bumpyBall (24000), options);
     const Vector3d x = field->points ().positions[5].cast<double> ();
     constexpr double STEP = 1e-3;
     std::vector<Vector3d> points{x};
@@ -256,14 +256,71 @@ TEST_F (MomentLatticeTest, TheGradientIsThatOfTheInterpolatedField)
 
 TEST_F (MomentLatticeTest, IsThereForLargeSupportsOfAConstantRadiusOnly)
 {
-  const shapes::Samples samples = bumpyBall (6000);
-  const auto lattice_for = [&] (const FieldOptions &options, double tolerance)
-  { return MomentLattice::make (*shapes::field (samples, options), withTolerance (tolerance), VOXEL); };
-  EXPECT_NE (lattice_for (optionsOf (Order::SPHERICAL, 0, 0.4), 0.01), nullptr);
-  EXPECT_EQ (lattice_for (optionsOf (Order::SPHERICAL, 0, 0.4), 0.0), nullptr);
-  EXPECT_EQ (lattice_for (optionsOf (Order::SPHERICAL, 0, 0.1), 0.01), nullptr) << "few nodes";
-  EXPECT_EQ (lattice_for (optionsOf (Order::QUADRATIC, 0, 0.4), 0.01), nullptr) << "whose gradients fit twice";
-  EXPECT_EQ (lattice_for (optionsOf (Order::SPHERICAL, 300), 0.01), nullptr) << "moments have kinks";
+  const auto points = shapes::points (bumpyBall (24000));
+  const auto lattice_for = [&] (const FieldOptions &options, double tolerance, double iso_level = 0.0)
+  {
+    PolygonizerOptions polygonizer = withTolerance (tolerance);
+    polygonizer.iso_level = iso_level;
+    return MomentLattice::make (*shapes::field (points, options), polygonizer, VOXEL) != nullptr;
+  };
+  FieldOptions options = optionsOf (Order::SPHERICAL, 0, 0.4);
+  EXPECT_TRUE (lattice_for (options, 0.01));
+  EXPECT_TRUE (lattice_for (options, 0.01, 0.03));
+  EXPECT_FALSE (lattice_for (options, 0.01, 0.2)) << "far off the nodes, which are asked for there";
+  EXPECT_FALSE (lattice_for (options, 0.0));
+  EXPECT_FALSE (lattice_for (options, 1e-9)) << "as fine as nobody wants it";
+  EXPECT_FALSE (lattice_for (optionsOf (Order::SPHERICAL, 0, 0.1), 0.01)) << "few nodes";
+  EXPECT_FALSE (lattice_for (optionsOf (Order::QUADRATIC, 0, 0.4), 0.01)) << "whose gradients fit twice";
+  EXPECT_FALSE (lattice_for (optionsOf (Order::SPHERICAL, 800), 0.01)) << "moments have kinks";
+  options.interpolation = erkpa::Interpolation::COLLOCATION;
+  EXPECT_FALSE (lattice_for (options, 0.01)) << "through the nodes, but for exact sums only";
+  options.interpolation = erkpa::Interpolation::NONE;
+  options.constraint = Constraint::FUNCTIONAL;
+  EXPECT_FALSE (lattice_for (options, 0.01)) << "squares, whose pivots are raised everywhere";
+  options.order = Order::LINEAR;
+  EXPECT_TRUE (lattice_for (options, 0.01));
+}
+
+/** \brief Floats may see a point on the other side of a plane of the lattice, where the gradient is another. */
+TEST_F (MomentLatticeTest, NextToPlanesOfTheLatticeTheNodesAreAsked)
+{
+  const auto field = shapes::field (bumpyBall (24000), optionsOf (Order::SPHERICAL, 0, 0.4));
+  LocalField local (*field);
+  for (std::size_t n = 0; n < 200; ++n)
+  {
+    Vector3d x = field->points ().positions[n].cast<double> ();
+    auto lattice = latticeAt (*field, withTolerance (0.01), {x});
+    ASSERT_NE (lattice, nullptr);
+    const int axis = static_cast<int> (n % 3);
+    x[axis] =
+        (lattice->cellOf (x)[axis] + 1 - std::pow (10.0, -11.0 + static_cast<double> (n % 6))) * lattice->spacing ();
+    lattice = latticeAt (*field, withTolerance (0.01), {x}); // whose cell alone it covers
+    BlockField block (*field, erkpa::lanes::bestEngine (), lattice.get ());
+    ASSERT_TRUE (block.gather (x + 0.5 * VOXEL * randomPoint (0.57), VOXEL));
+    ASSERT_TRUE (block.addPoint (x));
+    block.evaluate (true);
+    local.gather (x, 0.0);
+    EXPECT_LT ((block.gradient (0) - local.sample (x).gradient).norm (), 0.01);
+  }
+}
+
+TEST_F (MomentLatticeTest, PointsFarApartAreLeftToTheNodes)
+{
+  const auto field = shapes::field (bumpyBall (24000), optionsOf (Order::SPHERICAL, 0, 0.4));
+  const std::vector<Vector3d> points{field->points ().positions[5].cast<double> (),
+                                     -field->points ().positions[5].cast<double> ()};
+  const auto lattice = latticeAt (*field, withTolerance (0.01), points);
+  ASSERT_NE (lattice, nullptr);
+  BlockField block (*field, erkpa::lanes::bestEngine (), lattice.get ()), exact (*field);
+  for (BlockField *one : {&block, &exact})
+  {
+    ASSERT_TRUE (one->gather (Vector3d::Zero (), 1.2));
+    for (const Vector3d &x : points)
+      ASSERT_TRUE (one->addPoint (x));
+    one->evaluate (true);
+  }
+  for (std::size_t i = 0; i < points.size (); ++i)
+    EXPECT_EQ (block.value (i), exact.value (i));
 }
 
 /** \brief Meshes a field with and without a lattice. */
@@ -277,7 +334,7 @@ struct TwoMeshes
     EXPECT_TRUE (erkpa::polygonize (field, withTolerance (0.01), mesh, report).ok ());
     EXPECT_TRUE (erkpa::polygonize (field, withTolerance (0.0), exact, exact_report).ok ());
     EXPECT_GT (report.moment_sums, 0U);
-    EXPECT_LT (report.moment_sums, report.evaluations);
+    EXPECT_LT (3 * report.moment_sums, 2 * exact_report.evaluations) << "or it spares nothing";
     EXPECT_EQ (exact_report.moment_sums, 0U);
   }
 };
@@ -288,22 +345,23 @@ TEST_F (MomentLatticeTest, TheMeshIsClosedAndLiesWhereTheNodesPutIt)
   {
     FieldOptions options = optionsOf (Order::LINEAR, 0, 0.35);
     options.constraint = constraint;
-    const auto field = shapes::field (bumpyBall (6000), options);
+    const auto field = shapes::field (bumpyBall (24000), options);
     const TwoMeshes meshes (*field);
     EXPECT_MESH_CONTRACT (meshes.mesh, true);
     EXPECT_NEAR (shapes::volume (meshes.mesh), shapes::volume (meshes.exact), 1e-3);
     LocalField local (*field);
     double sum = 0.0, worst = 0.0;
-    for (const Eigen::Vector3f &v : meshes.mesh.vertices)
+    constexpr std::size_t STEP = 9; // the definition takes its time
+    for (std::size_t v = 0; v < meshes.mesh.vertices.size (); v += STEP)
     {
-      const Vector3d x = v.cast<double> () - field->points ().origin;
+      const Vector3d x = meshes.mesh.vertices[v].cast<double> () - field->points ().origin;
       local.gather (x, 0.0);
       const LocalSample sample = local.sample (x);
       const double off = std::abs (sample.value) / sample.gradient.norm () / VOXEL;
       sum += off;
       worst = std::max (worst, off);
     }
-    EXPECT_LT (sum / static_cast<double> (meshes.mesh.vertices.size ()), 0.01);
+    EXPECT_LT (STEP * sum / static_cast<double> (meshes.mesh.vertices.size ()), 0.01);
     EXPECT_LT (worst, 0.15);
   }
 }
@@ -311,7 +369,7 @@ TEST_F (MomentLatticeTest, TheMeshIsClosedAndLiesWhereTheNodesPutIt)
 TEST_F (MomentLatticeTest, AnOpenSurfaceEndsWhereItDoesWithoutALattice)
 {
   shapes::Samples samples;
-  for (int i = 0; i < 4000; ++i)
+  for (int i = 0; i < 9000; ++i)
   {
     Vector3d p = randomPoint (1.0);
     p[2] = 0.1 * std::sin (3.0 * p[0]);
@@ -323,7 +381,7 @@ TEST_F (MomentLatticeTest, AnOpenSurfaceEndsWhereItDoesWithoutALattice)
 
 TEST_F (MomentLatticeTest, TheMeshDoesNotDependOnTheNumberOfThreads)
 {
-  const auto field = shapes::field (bumpyBall (6000), optionsOf (Order::SPHERICAL, 0, 0.35));
+  const auto field = shapes::field (bumpyBall (24000), optionsOf (Order::SPHERICAL, 0, 0.35));
   std::array<erkpa::TriangleMesh, 2> meshes;
   for (std::size_t i = 0; i < 2; ++i)
   {

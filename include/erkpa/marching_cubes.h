@@ -24,7 +24,9 @@ struct PolygonizerOptions
   int min_component_points = 10; ///< a piece of surface that passes fewer points than this is dropped
   double moment_tolerance = 0.01; ///< where supports of a constant radius hold hundreds of nodes, moments are summed up
                                   ///< at points of a lattice and interpolated: weights of nodes are off by at most this
-                                  ///< share of the largest; in [0, 1), 0 = every sum is over the nodes
+                                  ///< share of the largest, and vertices from the field that is
+                                  ///< evaluated elsewhere by some thousandths of a voxel; in [0, 1), 0 = every sum is
+                                  ///< over the nodes
   bool split_normals = false;     ///< crease vertices are doubled, with the normal of each side: see splitNormals ()
   int threads = 0;                ///< 0 = all processors
 };

@@ -251,8 +251,9 @@ public:
     return options_.polygonizer.iso_level;
   }
 
-  /** \brief How exact moments are where they may be interpolated: see PolygonizerOptions::moment_tolerance. In [0, 1);
-   * 0 = every sum is over the points in the support. Default 0.01. */
+  /** \brief How exact moments are where they may be interpolated, which is where supports of a constant radius hold
+   * many hundreds of points: see PolygonizerOptions::moment_tolerance. In [0, 1); 0 = every sum is over the points in
+   * the support. Default 0.01: vertices then lie some thousandths of a voxel off the surface of getField (). */
   void
   setMomentTolerance (double moment_tolerance)
   {

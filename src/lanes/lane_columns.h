@@ -96,8 +96,7 @@ public:
   void
   addTo (std::size_t count, const float (*columns)[CHUNK], B *sums) const
   {
-    constexpr int MOST = B::size == 16 ? 26 : 12, GROUPS = (COUNT + MOST - 1) / MOST;
-    constexpr int NOW = (COUNT + GROUPS - 1) / GROUPS;
+    constexpr int NOW = SUMS_AT_ONCE<B, COUNT>;
     B added[NOW];
 #pragma GCC unroll 32
     for (int c = 0; c < NOW; ++c)

@@ -185,8 +185,6 @@ storeLatticeFit (const Settings &settings, FitT &fit, std::size_t channels, std:
     zero.store_unaligned (samples.nearest_distance + first);
   if (samples.aside != nullptr)
     fit.aside ().store_unaligned (samples.aside + first);
-  for (int j = 0; j < (samples.coefficients != nullptr ? FitT::SIZE : 0); ++j)
-    fit.coefficient (j).store_unaligned (samples.coefficients + static_cast<std::size_t> (j) * stride + first);
   float unsettled[B::size], support[B::size];
   xsimd::select (fit.isUnsettled (), one, zero).store_unaligned (unsettled);
   fit.supportNodes ().store_unaligned (support);

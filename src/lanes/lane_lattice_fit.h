@@ -57,13 +57,6 @@ public:
     return c_[0];
   }
 
-  /** \brief See LaneFit::coefficient (). */
-  B
-  coefficient (int j) const
-  {
-    return c_[j];
-  }
-
   /** \brief See LaneFit::aside (). */
   B
   aside () const
@@ -152,8 +145,7 @@ private:
   void
   sum (int differentiated, std::size_t first, B *sums) const
   {
-    constexpr int MOST = B::size == 16 ? 26 : 12, GROUPS = (COUNT + MOST - 1) / MOST;
-    constexpr int NOW = (COUNT + GROUPS - 1) / GROUPS;
+    constexpr int NOW = SUMS_AT_ONCE<B, COUNT>;
     const auto weight = [&] (int axis, std::size_t i)
     { return axis == differentiated ? axes_[axis].slope (i) : axes_[axis].weight (i); };
     B along_x[LatticeAxis<B>::MOST], added[NOW];

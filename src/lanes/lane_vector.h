@@ -47,6 +47,11 @@ inverseRoot (const B &s)
 #endif
 }
 
+/** \brief Of COUNT sums so many are taken up at once: as many as there are registers, in groups of about the same size.
+ */
+template <typename B, int COUNT, int MOST = B::size == 16 ? 26 : 12>
+constexpr int SUMS_AT_ONCE = (COUNT + (COUNT + MOST - 1) / MOST - 1) / ((COUNT + MOST - 1) / MOST);
+
 template <typename B>
 B
 dot (const B *a, const B *b)

@@ -156,7 +156,7 @@ describeMeshing (const PolygonizerOptions &polygonizer)
       ("iso", word ("V"), withDefault ("the surface is f = V, positive outside", polygonizer.iso_level).c_str ()) //
       ("moment_tolerance", word ("T"),
        withDefault ("how far weights may be off, as a share of the largest, where supports of a constant radius hold "
-                    "hundreds of points and sums are interpolated; 0: none are",
+                    "many hundreds of points and sums are interpolated; 0: none are",
                     polygonizer.moment_tolerance)
            .c_str ()) //
       ("viewpoint", word ("x,y,z"),

@@ -35,6 +35,7 @@ TEST_F (ErkpaReconstruct, PrintsEveryDefaultOnHelp)
                                    "-voxel",
                                    "-resolution",
                                    "-iso",
+                                   "-moment_tolerance",
                                    "-viewpoint",
                                    "-threads",
                                    "-evaluate",
@@ -110,6 +111,20 @@ TEST_F (ErkpaReconstruct, EvaluatesTheSignedDistance)
   std::getline (values >> std::ws, rest);
   EXPECT_EQ (rest, "10 20 -30 nan nan nan nan");
   EXPECT_FALSE (std::getline (values, rest));
+}
+
+TEST_F (ErkpaReconstruct, ReportsTheSumsThatEvaluationsAreInterpolatedFrom)
+{
+  write ("a.xyz", sphereRows (true));
+  const auto sums_of = [this] (const std::string &option)
+  {
+    EXPECT_EQ (run ("a.xyz out.ply -radius 1 -voxel 0.05 -report r.json" + option).status, 0);
+    return nlohmann::json::parse (read ("r.json"))["moment_sums"].get<int> ();
+  };
+  const int by_default = sums_of ("");
+  EXPECT_GT (by_default, 0);
+  EXPECT_GT (sums_of (" -moment_tolerance 0.005"), by_default);
+  EXPECT_EQ (sums_of (" -moment_tolerance 0"), 0);
 }
 
 TEST_F (ErkpaReconstruct, ReportsWhatItDid)

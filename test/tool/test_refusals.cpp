@@ -54,6 +54,7 @@ TEST_F (ErkpaReconstruct, RefusesNonsenseValuesWithOneLine)
                                    "-resolution 10.5",
                                    "-iso nan",
                                    "-iso 1mm",
+                                   "-moment_tolerance fine",
                                    "-threads -1",
                                    "-threads two",
                                    "-order cubic",
@@ -87,6 +88,8 @@ TEST_F (ErkpaReconstruct, RefusesNonsenseValuesWithOneLine)
     expectRefuses ("sphere.xyz out.ply " + option, option.substr (0, option.find (' ')));
   expectRefuses ("sphere.xyz out.ply -flatten 0", "flatten");
   expectRefuses ("sphere.xyz out.ply -flatten 2", "flatten");
+  expectRefuses ("sphere.xyz out.ply -moment_tolerance -0.1", "moments");
+  expectRefuses ("sphere.xyz out.ply -moment_tolerance 1", "moments");
   expectRefuses ("sphere.xyz out.ply -offset 0 -constraint offsurface", "offset");
   expectRefuses ("sphere.xyz out.ply -radius_ramp x,0,1", "ramp");
 }
