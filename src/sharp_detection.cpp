@@ -10,6 +10,7 @@
 #include "noise.h"
 #include "normal_smoothing.h"
 #include "point_grid.h"
+#include "separation_chains.h"
 #include "text.h"
 #include "threads.h"
 
@@ -21,7 +22,6 @@
 #include <map>
 #include <memory>
 #include <string>
-#include <unordered_set>
 #include <utility>
 
 namespace erkpa
@@ -31,49 +31,6 @@ namespace
 {
 
 constexpr double DEGREES = M_PI / 180.0;
-
-/** \brief Sets of separations of the same two faces that follow each other: one crease or wall each. */
-DisjointSets
-chainSeparations (const std::vector<Separation> &separations, double step)
-{
-  std::vector<Eigen::Vector3f> positions;
-  positions.reserve (separations.size ());
-  for (const Separation &separation : separations)
-    positions.push_back (separation.position);
-  DisjointSets chains (separations.size ());
-  if (positions.empty ())
-    return chains;
-  const auto search = makeGridSearch (std::make_shared<const PointGrid> (positions, step, 1));
-  std::vector<int> found;
-  std::vector<float> squared;
-  for (std::size_t i = 0; i < positions.size (); ++i)
-  {
-    search->withinRadius (positions[i], step, found, squared);
-    for (const int j : found)
-      if (separations[static_cast<std::size_t> (j)].face == separations[i].face &&
-          separations[static_cast<std::size_t> (j)].other == separations[i].other)
-        chains.unite (static_cast<int> (i), j);
-  }
-  return chains;
-}
-
-/** \brief How far a set of places extends, along its longest side. */
-std::map<int, float>
-lengthsOf (const std::vector<Separation> &separations, DisjointSets &chains)
-{
-  std::map<int, std::pair<Eigen::Vector3f, Eigen::Vector3f>> boxes;
-  for (std::size_t i = 0; i < separations.size (); ++i)
-  {
-    const Eigen::Vector3f &p = separations[i].position;
-    auto &box = boxes.try_emplace (chains.find (static_cast<int> (i)), p, p).first->second;
-    box.first = box.first.cwiseMin (p);
-    box.second = box.second.cwiseMax (p);
-  }
-  std::map<int, float> lengths;
-  for (const auto &[chain, box] : boxes)
-    lengths[chain] = (box.second - box.first).norm ();
-  return lengths;
-}
 
 /** \brief What noise asks for: the larger it is, the more nodes it takes to tell faces apart. */
 SegmentationOptions
@@ -195,38 +152,6 @@ withoutFolds (std::vector<Stretch> stretches, const FoldTest &test, int threads)
     if (!are_folds[i])
       kept.push_back (std::move (stretches[i]));
   return kept;
-}
-
-/** \brief Two faces and a cell of a grid. */
-using SeparatedCell = std::array<long, 5>;
-
-struct SeparatedCellHash
-{
-  std::size_t
-  operator() (const SeparatedCell &cell) const
-  {
-    constexpr std::size_t ODD = 0x9e3779b97f4a7c15u; // Fibonacci hashing
-    std::size_t hash = 0;
-    for (const long number : cell)
-      hash = (hash ^ static_cast<std::size_t> (number)) * ODD;
-    return hash ^ hash >> 32;
-  }
-};
-
-/** \brief One separation of two faces for each cell of a grid. */
-std::vector<Separation>
-thinOut (const std::vector<Separation> &separations, double cell)
-{
-  std::unordered_set<SeparatedCell, SeparatedCellHash> taken (separations.size ());
-  std::vector<Separation> thinned;
-  for (const Separation &separation : separations)
-  {
-    const Eigen::Vector3f place = (separation.position / cell).array ().round ();
-    const auto number = [&place] (int axis) { return std::lround (place[axis]); };
-    if (taken.insert ({separation.face, separation.other, number (0), number (1), number (2)}).second)
-      thinned.push_back (separation);
-  }
-  return thinned;
 }
 
 /** \brief How far the k-th node is from each separation. */
