@@ -24,7 +24,7 @@ using erkpa::LocalSample;
 using erkpa::MomentLattice;
 using erkpa::PolygonizerOptions;
 
-constexpr double VOXEL = 0.02;
+constexpr double VOXEL = 0.02, MESH_VOXEL = 0.03;
 
 PolygonizerOptions
 withTolerance (double tolerance)
@@ -286,7 +286,7 @@ TEST_F (MomentLatticeTest, NextToPlanesOfTheLatticeTheNodesAreAsked)
 {
   const auto field = shapes::field (bumpyBall (24000), optionsOf (Order::SPHERICAL, 0, 0.4));
   LocalField local (*field);
-  for (std::size_t n = 0; n < 200; ++n)
+  for (std::size_t n = 0; n < 60; ++n)
   {
     Vector3d x = field->points ().positions[n].cast<double> ();
     auto lattice = latticeAt (*field, withTolerance (0.01), {x});
@@ -323,6 +323,15 @@ TEST_F (MomentLatticeTest, PointsFarApartAreLeftToTheNodes)
     EXPECT_EQ (block.value (i), exact.value (i));
 }
 
+/** \brief The same with a coarser grid, for meshes. */
+PolygonizerOptions
+forMesh (double tolerance)
+{
+  PolygonizerOptions options = withTolerance (tolerance);
+  options.voxel_size = MESH_VOXEL;
+  return options;
+}
+
 /** \brief Meshes a field with and without a lattice. */
 struct TwoMeshes
 {
@@ -331,39 +340,36 @@ struct TwoMeshes
 
   explicit TwoMeshes (const ImplicitField &field)
   {
-    EXPECT_TRUE (erkpa::polygonize (field, withTolerance (0.01), mesh, report).ok ());
-    EXPECT_TRUE (erkpa::polygonize (field, withTolerance (0.0), exact, exact_report).ok ());
+    EXPECT_TRUE (erkpa::polygonize (field, forMesh (0.01), mesh, report).ok ());
+    EXPECT_TRUE (erkpa::polygonize (field, forMesh (0.0), exact, exact_report).ok ());
     EXPECT_GT (report.moment_sums, 0U);
-    EXPECT_LT (3 * report.moment_sums, 2 * exact_report.evaluations) << "or it spares nothing";
+    EXPECT_LT (report.moment_sums, exact_report.evaluations) << "or it spares nothing";
     EXPECT_EQ (exact_report.moment_sums, 0U);
   }
 };
 
 TEST_F (MomentLatticeTest, TheMeshIsClosedAndLiesWhereTheNodesPutIt)
 {
-  for (const Constraint constraint : {Constraint::HERMITE, Constraint::FUNCTIONAL})
+  FieldOptions options = optionsOf (Order::LINEAR, 0, 0.35);
+  options.constraint = Constraint::FUNCTIONAL; // which suffers most
+  const auto field = shapes::field (bumpyBall (24000), options);
+  const TwoMeshes meshes (*field);
+  EXPECT_MESH_CONTRACT (meshes.mesh, true);
+  EXPECT_NEAR (shapes::volume (meshes.mesh), shapes::volume (meshes.exact), 1e-3);
+  LocalField local (*field);
+  double sum = 0.0, worst = 0.0;
+  constexpr std::size_t STEP = 19; // the definition takes its time
+  for (std::size_t v = 0; v < meshes.mesh.vertices.size (); v += STEP)
   {
-    FieldOptions options = optionsOf (Order::LINEAR, 0, 0.35);
-    options.constraint = constraint;
-    const auto field = shapes::field (bumpyBall (24000), options);
-    const TwoMeshes meshes (*field);
-    EXPECT_MESH_CONTRACT (meshes.mesh, true);
-    EXPECT_NEAR (shapes::volume (meshes.mesh), shapes::volume (meshes.exact), 1e-3);
-    LocalField local (*field);
-    double sum = 0.0, worst = 0.0;
-    constexpr std::size_t STEP = 9; // the definition takes its time
-    for (std::size_t v = 0; v < meshes.mesh.vertices.size (); v += STEP)
-    {
-      const Vector3d x = meshes.mesh.vertices[v].cast<double> () - field->points ().origin;
-      local.gather (x, 0.0);
-      const LocalSample sample = local.sample (x);
-      const double off = std::abs (sample.value) / sample.gradient.norm () / VOXEL;
-      sum += off;
-      worst = std::max (worst, off);
-    }
-    EXPECT_LT (STEP * sum / static_cast<double> (meshes.mesh.vertices.size ()), 0.01);
-    EXPECT_LT (worst, 0.15);
+    const Vector3d x = meshes.mesh.vertices[v].cast<double> () - field->points ().origin;
+    local.gather (x, 0.0);
+    const LocalSample sample = local.sample (x);
+    const double off = std::abs (sample.value) / sample.gradient.norm () / MESH_VOXEL;
+    sum += off;
+    worst = std::max (worst, off);
   }
+  EXPECT_LT (STEP * sum / static_cast<double> (meshes.mesh.vertices.size ()), 0.01);
+  EXPECT_LT (worst, 0.15);
 }
 
 TEST_F (MomentLatticeTest, AnOpenSurfaceEndsWhereItDoesWithoutALattice)
@@ -385,7 +391,7 @@ TEST_F (MomentLatticeTest, TheMeshDoesNotDependOnTheNumberOfThreads)
   std::array<erkpa::TriangleMesh, 2> meshes;
   for (std::size_t i = 0; i < 2; ++i)
   {
-    PolygonizerOptions options = withTolerance (0.01);
+    PolygonizerOptions options = forMesh (0.01);
     options.threads = 1 + 2 * static_cast<int> (i);
     erkpa::PolygonizerReport report;
     ASSERT_TRUE (erkpa::polygonize (*field, options, meshes[i], report).ok ());
