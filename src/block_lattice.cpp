@@ -44,7 +44,7 @@ BlockLattice::copyRow (const Eigen::Array3i &first, std::size_t place, const Eig
   constexpr std::size_t SIDE = MomentLattice::SIDE;
   const MomentLattice::Brick *brick = lattice_->brickOf (first);
   brick = brick != nullptr && brick->points != 0 ? brick : nullptr;
-  const std::size_t from = static_cast<std::size_t> ((first[0] & 3) | ((first[1] & 3) << 2) | ((first[2] & 3) << 4));
+  const std::size_t from = MomentLattice::placeOf (first);
   for (std::size_t column = 0; column < lattice_->columns (); ++column)
   {
     float *const to = sums_.data () + column * stride_ + place;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "crease_edges.h"
 
+#include "crease_folds.h"
 #include "crease_geometry.h"
 #include "crease_links.h"
 #include "mesh_intersections.h"
@@ -28,7 +29,8 @@ public:
   CreaseBuilder (double voxel, const LargeVector<CellLoop> &loops, const std::vector<MeshedLoop> &meshed, int threads,
                  LargeVector<Triangle> &triangles, SurfaceVertices &vertices)
       : voxel_ (voxel), threads_ (threads), loops_ (loops), meshed_ (meshed), triangles_ (triangles),
-        vertices_ (vertices), before_loops_ (triangles.size ()), links_ (loops.size ())
+        vertices_ (vertices), before_loops_ (triangles.size ()), links_ (loops.size ()),
+        folds_ (loops, links_, vertices)
   {
   }
 
@@ -74,7 +76,7 @@ private:
     {
       changed = false;
       for (const auto &[pair, of] : links_.joined ())
-        if (isAlong (of.first) && isAlong (of.second) && isReversed (pair, of.first))
+        if (isAlong (of.first) && isAlong (of.second) && folds_.isReversed (pair, of.first))
         {
           const auto one = static_cast<std::size_t> (links_.center (of.first));
           const auto other = static_cast<std::size_t> (links_.center (of.second));
@@ -92,45 +94,10 @@ private:
     return meshed_[loop].crossings.size () == 2;
   }
 
-  /** \brief Whether both triangles at the crease edge through the side \a pair of a loop look away. */
-  bool
-  isReversed (const VertexPair &pair, std::size_t loop) const
-  {
-    const std::vector<int> &ring = loops_[loop].ring;
-    const auto first = std::find (ring.begin (), ring.end (), pair.first) - ring.begin ();
-    const bool is_forward = ring[static_cast<std::size_t> (first + 1) % ring.size ()] == pair.second;
-    const auto [a, b] = is_forward ? pair : VertexPair (pair.second, pair.first);
-    const int c = links_.center (loop), d = links_.next (loop, a, b);
-    return looksAway (a, d, c, normal (a)) && looksAway (b, c, d, normal (b));
-  }
-
-  bool
-  looksAway (int a, int b, int c, const Eigen::Vector3d &normal) const
-  {
-    return erkpa::looksAway ({a, b, c}, normal, vertices_);
-  }
-
   const Eigen::Vector3d &
   normal (int v) const
   {
     return vertices_.normals[static_cast<std::size_t> (v)];
-  }
-
-  bool
-  isFolded (std::size_t loop) const
-  {
-    const std::vector<int> &ring = loops_[loop].ring;
-    const int c = links_.center (loop);
-    for (std::size_t i = 0; i < ring.size (); ++i)
-    {
-      const int a = ring[i], b = ring[(i + 1) % ring.size ()];
-      const int d = links_.next (loop, a, b);
-      const bool folded = d < 0 ? looksAway (a, b, c, normal (a) + normal (b))
-                                : looksAway (a, d, c, normal (a)) || looksAway (b, c, d, normal (b));
-      if (folded)
-        return true;
-    }
-    return false;
   }
 
   /** \brief The loops for which \a is_listed holds, in their order. */
@@ -156,7 +123,7 @@ private:
   {
     links_.join ();
     const std::vector<std::size_t> folded =
-        listLoops ([this] (std::size_t loop) { return links_.has (loop) && isFolded (loop); });
+        listLoops ([this] (std::size_t loop) { return links_.has (loop) && folds_.isFolded (loop); });
     for (const std::size_t loop : folded)
       links_.giveUp (loop);
     return !folded.empty ();
@@ -339,6 +306,7 @@ private:
   std::vector<int> owners_;        // per triangle of loops the one whose crease vertex it has; -1 for none
   std::vector<std::size_t> with_middle_;
   CreaseLinks links_;
+  const CreaseFolds folds_;
 };
 
 } // namespace

@@ -84,10 +84,17 @@ public:
     return (x / spacing_).array ().floor ().cast<int> ();
   }
 
+  /** \brief The place of a cell or point in its brick. */
+  static std::size_t
+  placeOf (const Eigen::Array3i &cell)
+  {
+    return static_cast<std::size_t> ((cell[0] & 3) | ((cell[1] & 3) << 2) | ((cell[2] & 3) << 4));
+  }
+
   static std::uint64_t
   bitOf (const Eigen::Array3i &cell)
   {
-    return std::uint64_t (1) << ((cell[0] & 3) | ((cell[1] & 3) << 2) | ((cell[2] & 3) << 4));
+    return std::uint64_t (1) << placeOf (cell);
   }
 
   double

@@ -3,6 +3,8 @@
 
 #include "shapes.h"
 
+#include "lanes/lanes.h"
+
 #include <gtest/gtest.h>
 
 #include <functional>
@@ -35,6 +37,15 @@ randomPoint (double size)
 {
   std::uniform_real_distribution<double> uniform (-size, size);
   return {uniform (random_engine), uniform (random_engine), uniform (random_engine)};
+}
+
+/** \brief The lanes of every instruction set that this processor has. */
+inline std::vector<const erkpa::lanes::Engine *>
+allEngines ()
+{
+  std::size_t count = 0;
+  const erkpa::lanes::Engine *const *const engines = erkpa::lanes::engines (count);
+  return {engines, engines + count};
 }
 
 /** \brief Nodes all through a cube, as a fit in space needs them. */

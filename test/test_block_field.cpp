@@ -123,11 +123,9 @@ protected:
   {
     const double spacing = field.spacing ();
     const bool is_functional = field.options ().constraint == Constraint::FUNCTIONAL;
-    std::size_t engines = 0;
-    const erkpa::lanes::Engine *const *engine = erkpa::lanes::engines (engines);
-    for (std::size_t e = 0; e < engines; ++e)
+    for (const erkpa::lanes::Engine *engine : allEngines ())
     {
-      BlockField block (field, *engine[e]);
+      BlockField block (field, *engine);
       LocalField local (field);
       int compared = 0, settled = 0, keys = 0;
       for (const Vector3d &middle : middles)
@@ -144,13 +142,13 @@ protected:
           keys += local.sideKey () == block.sideKey (i) ? 1 : 0;
           // Functional values hang on the thickness of the nodes alone, which floats know less well, the farther off.
           const double scale = is_functional ? 10.0 * std::max (1.0, std::abs (sample.value) / spacing) : 1.0;
-          EXPECT_NEAR (sample.value, block.value (i), 1e-4 * scale * spacing) << engine[e]->name;
+          EXPECT_NEAR (sample.value, block.value (i), 1e-4 * scale * spacing) << engine->name;
           EXPECT_LT ((sample.gradient - block.gradient (i)).norm (),
                      2e-3 * scale * std::max (1.0, sample.gradient.norm ()))
-              << engine[e]->name;
+              << engine->name;
         }
       }
-      EXPECT_GT (settled, least_settled * compared) << engine[e]->name;
+      EXPECT_GT (settled, least_settled * compared) << engine->name;
       EXPECT_GT (keys, settled - settled / 100) << "a node on the very rim of a support may count or not";
     }
   }
@@ -190,9 +188,7 @@ private:
 TEST_F (BlockFieldTest, AgreesWithTheDefinitionForEveryInstructionSetBasisAndConstraint)
 {
   const shapes::Samples samples = wavySheet ();
-  std::size_t engines = 0;
-  const erkpa::lanes::Engine *const *engine = erkpa::lanes::engines (engines);
-  for (std::size_t e = 0; e < engines; ++e)
+  for (const erkpa::lanes::Engine *engine : allEngines ())
     for (const Order order : {Order::CONSTANT, Order::LINEAR, Order::SPHERICAL, Order::QUADRATIC})
       for (const Constraint constraint : {Constraint::HERMITE, Constraint::FUNCTIONAL, Constraint::OFFSURFACE})
         for (const bool constant_radius : {false, true})
@@ -202,16 +198,14 @@ TEST_F (BlockFieldTest, AgreesWithTheDefinitionForEveryInstructionSetBasisAndCon
           options.constraint = constraint;
           options.k = constant_radius ? 0 : 30;
           options.radius = constant_radius ? 0.15 : 0.0;
-          expectClose (samples, options, *engine[e]);
+          expectClose (samples, options, *engine);
         }
 }
 
 TEST_F (BlockFieldTest, AgreesWithTheDefinitionWhereSupportsAreFlattened)
 {
   const shapes::Samples samples = wavySheet ();
-  std::size_t engines = 0;
-  const erkpa::lanes::Engine *const *engine = erkpa::lanes::engines (engines);
-  for (std::size_t e = 0; e < engines; ++e)
+  for (const erkpa::lanes::Engine *engine : allEngines ())
     for (const Order order : {Order::CONSTANT, Order::LINEAR, Order::SPHERICAL, Order::QUADRATIC})
       for (const Constraint constraint : {Constraint::HERMITE, Constraint::FUNCTIONAL, Constraint::OFFSURFACE})
       {
@@ -222,7 +216,7 @@ TEST_F (BlockFieldTest, AgreesWithTheDefinitionWhereSupportsAreFlattened)
         options.constraint = constraint;
         options.kernel = kernel;
         options.flatten = 0.6;
-        expectClose (samples, options, *engine[e]);
+        expectClose (samples, options, *engine);
       }
 }
 
@@ -231,11 +225,9 @@ TEST_F (BlockFieldTest, AgreesWithTheDefinitionFarFromTheNodes)
 {
   const auto field = shapes::field (wavySheet (), optionsOf (Order::SPHERICAL, 20));
   const double far = 10.0 * field->typicalRadius ();
-  std::size_t engines = 0;
-  const erkpa::lanes::Engine *const *engine = erkpa::lanes::engines (engines);
-  for (std::size_t e = 0; e < engines; ++e)
+  for (const erkpa::lanes::Engine *engine : allEngines ())
   {
-    BlockField block (*field, *engine[e]);
+    BlockField block (*field, *engine);
     LocalField local (*field);
     for (int i = 0; i < 200; ++i)
     {
@@ -246,7 +238,7 @@ TEST_F (BlockFieldTest, AgreesWithTheDefinitionFarFromTheNodes)
       block.evaluate (false);
       local.gather (x, 0.0);
       const double value = local.value (x);
-      EXPECT_NEAR (block.value (0), value, 2e-3 * local.support ().radius ()) << engine[e]->name;
+      EXPECT_NEAR (block.value (0), value, 2e-3 * local.support ().radius ()) << engine->name;
     }
   }
 }
@@ -259,11 +251,9 @@ TEST_F (BlockFieldTest, AgreesWithTheDefinitionInABallOfManySupports)
     {
       const auto field = shapes::field (wavySheet (), is_fixed ? optionsOf (order, 0, 0.1) : optionsOf (order, 20));
       const double radius = field->typicalRadius (), extent = 9.0 * radius;
-      std::size_t engines = 0;
-      const erkpa::lanes::Engine *const *engine = erkpa::lanes::engines (engines);
-      for (std::size_t e = 0; e < engines; ++e)
+      for (const erkpa::lanes::Engine *engine : allEngines ())
       {
-        BlockField block (*field, *engine[e]);
+        BlockField block (*field, *engine);
         LocalField local (*field);
         ASSERT_TRUE (block.gather (Vector3d::Zero (), extent));
         std::vector<Vector3d> points;
@@ -278,7 +268,7 @@ TEST_F (BlockFieldTest, AgreesWithTheDefinitionInABallOfManySupports)
         {
           local.gather (points[i], 0.0);
           EXPECT_NEAR (block.value (i), local.value (points[i]), 2e-4 * radius)
-              << engine[e]->name << (is_fixed ? ", fixed radius, " : ", nearest, ") << static_cast<int> (order);
+              << engine->name << (is_fixed ? ", fixed radius, " : ", nearest, ") << static_cast<int> (order);
         }
       }
     }
@@ -314,11 +304,9 @@ TEST_F (BlockFieldTest, AgreesWithTheDefinitionWhereTheDensityOfThePointsJumps)
       samples.add ({p[0], p[1], 0.0}, Vector3d::UnitZ ());
   }
   const auto field = shapes::field (samples, optionsOf (Order::SPHERICAL, 20));
-  std::size_t engines = 0;
-  const erkpa::lanes::Engine *const *engine = erkpa::lanes::engines (engines);
-  for (std::size_t e = 0; e < engines; ++e)
+  for (const erkpa::lanes::Engine *engine : allEngines ())
   {
-    BlockField block (*field, *engine[e]);
+    BlockField block (*field, *engine);
     LocalField local (*field);
     double least = HUGE_VAL, most = 0.0;
     for (double y = -0.6; y <= 0.6; y += 0.3)
@@ -346,11 +334,9 @@ TEST_F (BlockFieldTest, AgreesWithTheDefinitionWhereFacesMeet)
   {
     const auto field = boxWithFaces (order);
     const double spacing = field->spacing (), least_wall = 1.2 * spacing;
-    std::size_t engines = 0;
-    const erkpa::lanes::Engine *const *engine = erkpa::lanes::engines (engines);
-    for (std::size_t e = 0; e < engines; ++e)
+    for (const erkpa::lanes::Engine *engine : allEngines ())
     {
-      BlockField block (*field, *engine[e]);
+      BlockField block (*field, *engine);
       LocalField local (*field);
       block.thicken (least_wall);
       local.thicken (least_wall);
@@ -372,8 +358,8 @@ TEST_F (BlockFieldTest, AgreesWithTheDefinitionWhereFacesMeet)
         }
       }
       // At equal values of two faces either may be taken.
-      EXPECT_GT (faces, compared - compared / 100) << engine[e]->name;
-      EXPECT_GT (slopes, compared - compared / 100) << engine[e]->name;
+      EXPECT_GT (faces, compared - compared / 100) << engine->name;
+      EXPECT_GT (slopes, compared - compared / 100) << engine->name;
     }
   }
 }

@@ -112,15 +112,13 @@ protected:
   static void
   expectAgreement (const ImplicitField &field, const PolygonizerOptions &options, double close, double close_gradient)
   {
-    std::size_t engines = 0;
-    const erkpa::lanes::Engine *const *engine = erkpa::lanes::engines (engines);
-    for (std::size_t e = 0; e < engines; ++e)
+    for (const erkpa::lanes::Engine *engine : allEngines ())
       for (std::size_t node = 0; node < 2000; node += 400)
       {
         const std::vector<Vector3d> points = pointsNear (field, node);
-        const auto lattice = latticeAt (field, options, points, *engine[e]);
+        const auto lattice = latticeAt (field, options, points, *engine);
         ASSERT_NE (lattice, nullptr);
-        BlockField block (field, *engine[e], lattice.get ());
+        BlockField block (field, *engine, lattice.get ());
         block.setReach (options.reach, 0.0, VOXEL);
         ASSERT_TRUE (block.gather (field.points ().positions[node].cast<double> (), 6.0 * VOXEL));
         for (const Vector3d &x : points)
@@ -343,7 +341,7 @@ struct TwoMeshes
     EXPECT_TRUE (erkpa::polygonize (field, forMesh (0.01), mesh, report).ok ());
     EXPECT_TRUE (erkpa::polygonize (field, forMesh (0.0), exact, exact_report).ok ());
     EXPECT_GT (report.moment_sums, 0U);
-    EXPECT_LT (report.moment_sums, exact_report.evaluations) << "or it spares nothing";
+    EXPECT_LT (3 * report.moment_sums, 2 * exact_report.evaluations) << "or it spares nothing";
     EXPECT_EQ (exact_report.moment_sums, 0U);
   }
 };
