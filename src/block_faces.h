@@ -1,9 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "block_nodes.h"
-#include "block_points.h"
-#include "face_groups.h"
+#include "block_parts.h"
 #include "face_vote.h"
 
 #include <erkpa/implicit_field.h>
@@ -21,8 +19,8 @@ namespace erkpa
 
 /** \brief The field where faces meet, at many points at once: LocalField::evaluateFaces ()'s quick double.
  *
- * The fits to a group of faces are made together for all points that see it, in lanes; then the nodes around each point
- * vote on how the groups combine. Works in the lanes' unit.
+ * Fits each group of faces alone, then the nodes around each point vote on how the groups combine. Works in the lanes'
+ * unit.
  */
 class BlockFaces
 {
@@ -37,13 +35,16 @@ public:
    * \return false where no faces are apart near them
    */
   bool
-  gather (const Eigen::Vector3d &center, double extent);
-
-  /** \brief Whether faces are kept apart in reach of \a x (local frame), which is in the ball. */
-  bool
-  hasSeparationAt (const Eigen::Vector3d &x) const
+  gather (const Eigen::Vector3d &center, double extent)
   {
-    return groups_.hasSeparationAt (x);
+    return parts_.gather (center, extent);
+  }
+
+  /** \brief The faces around the ball. */
+  const FaceGroups &
+  groups () const
+  {
+    return parts_.groups ();
   }
 
   /** \brief See LocalField::thicken (). */
@@ -69,6 +70,23 @@ public:
   combine (const lanes::Settings &settings, const lanes::Nodes &nodes, const std::vector<std::uint32_t> &which,
            BlockPoints &points);
 
+  /** \brief A point, and a face whose piece of f is wanted there. */
+  struct Question
+  {
+    std::uint32_t point;
+    int face;
+  };
+
+  /** \brief The pieces of f on the sides of faces: LocalField::sampleOnSides ()'s quick double.
+   * \param[in] settings,which,points as for combine ()
+   * \param[in] questions those about a point follow each other
+   * \param[out] answers to each; those of no faces are the fits to all nodes, which \a points has
+   * \return false where that cannot be told
+   */
+  bool
+  sampleSides (const lanes::Settings &settings, const std::vector<std::uint32_t> &which, const BlockPoints &points,
+               const std::vector<Question> &questions, std::vector<BlockParts::Part> &answers);
+
   /** \brief For the points last combined, by their place in \a which: the face that holds there, -1 for that of the
    * nearest node. */
   int
@@ -87,18 +105,16 @@ public:
   std::size_t
   evaluations () const
   {
-    return evaluations_;
+    return parts_.evaluations ();
   }
 
   std::size_t
   supportNodes () const
   {
-    return support_nodes_;
+    return parts_.supportNodes ();
   }
 
 private:
-  static constexpr std::size_t MAX_TERMS = 10, MAX_PRESENT = 64;
-
   /** \brief A point and its share of the lists; in reach of few groups. */
   struct Combined
   {
@@ -108,21 +124,6 @@ private:
     double thickening = 0.0;
   };
 
-  /** \brief The fit to one group at one point. */
-  struct Part
-  {
-    std::uint32_t point;
-    std::uint64_t faces; // of the group, as bits: places among those present
-    lanes::State state;
-    int face;
-    float value, radius, nearest, aside, border_offset;
-    Eigen::Vector3f gradient;
-    std::array<float, MAX_TERMS> coefficients;
-  };
-
-  void
-  gatherNodes (const std::vector<std::uint32_t> &which, const BlockPoints &points);
-
   bool
   isClearOfSurface (const lanes::Nodes &nodes, const BlockPoints &points, std::uint32_t point) const;
 
@@ -130,7 +131,7 @@ private:
   listNear (const Eigen::Vector3f &x, float radius);
 
   bool
-  holdsOneFace (float radius);
+  holdsOneFace (float radius) const;
 
   void
   weighVoters (float radius, Combined &combined);
@@ -138,14 +139,11 @@ private:
   void
   askForParts (const BlockPoints &points, std::uint32_t point, Combined &combined);
 
-  void
-  fitParts (const BlockPoints &points);
-
-  void
-  fitPart (const BlockPoints &points, std::uint64_t faces);
-
-  void
-  takeUp (std::size_t i, Part &part) const;
+  const BlockParts::Part &
+  partOf (const Combined &combined, int group) const
+  {
+    return parts_.part (combined.first_part + static_cast<std::size_t> (group));
+  }
 
   void
   vote (BlockPoints &points, std::uint32_t point, Combined &combined);
@@ -156,28 +154,17 @@ private:
   void
   settleReach (BlockPoints &points, std::uint32_t point, double aside) const;
 
-  const ImplicitField &field_;
   const lanes::Engine &engine_;
   lanes::Settings settings_;
   double unit_, least_wall_ = 0.0;
   float level_ = NAN; // none
-  FaceGroups groups_;
-  Eigen::Vector3d center_ = Eigen::Vector3d::Zero ();
-  double reach_of_parts_ = 0.0, reach_of_voters_ = 0.0; // that nodes were gathered for
-  BlockNodes all_, near_points_, of_part_;              // in reach of parts, of voters; of a part
-  std::vector<int> slots_;                              // among all_ of the nodes in reach of voters
-  BlockPoints at_part_;
+  BlockParts parts_;
   std::vector<Combined> combined_;
   std::array<std::vector<float>, 3> voters_; // of all points: (x_i - x) / ε, ...
   std::vector<float> weights_;               // ... and their weights
   std::size_t listed_ = 0;                   // of both
-  std::vector<Part> parts_;
-  std::vector<std::uint32_t> parts_to_fit_; // those of one group
-  std::vector<int> near_;                   // nodes around a point, among all_
-  std::vector<int> slots_close_;            // those within FaceGroups::CLOSE
-  std::vector<std::uint32_t> places_;       // the same, among near_points_
+  std::vector<float> shares_;                // of the faces present: whether they have a say
   FaceVote vote_;
-  std::size_t evaluations_ = 0, support_nodes_ = 0;
 };
 
 } // namespace erkpa

@@ -151,7 +151,7 @@ BlockField::clearPoints ()
 bool
 BlockField::addPoint (const Eigen::Vector3d &x)
 {
-  const bool is_at_faces = has_separations_ && faces_.hasSeparationAt (x);
+  const bool is_at_faces = has_separations_ && faces_.groups ().hasSeparationAt (x);
   if (is_at_faces && !BlockFaces::canEvaluate (field_))
     return false;
   const Eigen::Vector3f scaled = ((x - center_) * inverse_unit_).cast<float> ();
@@ -172,12 +172,18 @@ BlockField::addPoint (const Eigen::Vector3d &x)
     interpolated_.add (scaled);
     return true;
   }
+  addPlain (x, is_at_faces);
+  return true;
+}
+
+void
+BlockField::addPlain (const Eigen::Vector3d &x, bool is_at_faces)
+{
   const auto index = static_cast<std::uint32_t> (plain_.size ());
   places_.push_back ({Kind::PLAIN, index, is_at_faces ? static_cast<int> (at_faces_.size ()) : -1});
   if (is_at_faces)
     at_faces_.push_back (index);
-  plain_.add (scaled);
-  return true;
+  plain_.add (((x - center_) * inverse_unit_).cast<float> ());
 }
 
 /** \brief What is known of ε at the points. */
@@ -214,14 +220,19 @@ BlockField::evaluate (bool gradients)
       interpolated_.leaveOpen ();
     takeUnsettled ();
   }
-  run ();
-  if (plain_.hasShort () || enriched_.hasShort ())
-  {
-    widen ();
-    run ();
-  }
+  runAll ();
   finishPlain ();
   finishEnriched ();
+}
+
+void
+BlockField::runAll ()
+{
+  run ();
+  if (!plain_.hasShort () && !enriched_.hasShort ())
+    return;
+  widen ();
+  run ();
 }
 
 void
@@ -312,8 +323,7 @@ BlockField::addSketchPoint (const Eigen::Vector3d &x)
 {
   if (settings_.constraint == lanes::Constraint::FUNCTIONAL || settings_.basis == lanes::Basis::CONSTANT)
     return false;
-  places_.push_back ({Kind::PLAIN, static_cast<std::uint32_t> (plain_.size ()), -1});
-  plain_.add (((x - center_) * inverse_unit_).cast<float> ());
+  addPlain (x, false);
   return true;
 }
 

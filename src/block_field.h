@@ -7,6 +7,7 @@
 #include "block_nodes.h"
 #include "block_points.h"
 #include "field_sketch.h"
+#include "local_field.h"
 
 #include <erkpa/implicit_field.h>
 
@@ -138,6 +139,43 @@ public:
   int
   face (std::size_t point) const;
 
+  /** \brief Whether pieces of the field on either side of creases may be had here at all. */
+  static bool
+  canSampleSides (const ImplicitField &field);
+
+  /** \brief Take up a point for sampleSides ().
+   * \return false, and it is not taken up, where it is not in the ball, or other sharp surfaces are near than those
+   * between faces
+   */
+  bool
+  addSidePoint (const Eigen::Vector3d &x);
+
+  /** \brief What is wanted at a point: the piece of f that holds on a face. */
+  struct SideQuestion
+  {
+    std::size_t point;
+    int face;
+  };
+
+  struct SideAnswer
+  {
+    FieldSample sample;      ///< undefined where the face is out of reach
+    bool is_settled = false; ///< else ask LocalField
+  };
+
+  /** \brief LocalField::sampleOnSides () at all points.
+   * \param[in] questions those about a point follow each other
+   */
+  void
+  sampleSides (const std::vector<SideQuestion> &questions, LocalField::Slope slope, std::vector<SideAnswer> &answers);
+
+  /** \brief See LocalField::keepsApart (). */
+  bool
+  keepsApart (int face, int other, const Eigen::Vector3d &x) const
+  {
+    return has_separations_ && (x - center_).norm () <= extent_ && faces_.groups ().keepsApart (face, other, x);
+  }
+
   /** \brief Take up a point for sketch (), as if no sharp surface and no other face were near.
    * \return false with eq. (2): what the nodes ask for depends on the point, and their fit says nothing of other ones
    */
@@ -204,6 +242,17 @@ private:
 
   void
   run ();
+
+  /** \brief The same again where ε was larger than expected. */
+  void
+  runAll ();
+
+  /** \brief Take up a point where no sharp surface but those between faces is near. */
+  void
+  addPlain (const Eigen::Vector3d &x, bool is_at_faces);
+
+  SideAnswer
+  answerOf (std::size_t point, const BlockParts::Part *part, LocalField::Slope slope) const;
 
   /** \brief Take those points of the lattice that want sums over the nodes to the plain ones. */
   void

@@ -26,19 +26,6 @@ BlockNodes::lookAround (const Eigen::Vector3d &center, double reach)
         stretches_.push_back ({static_cast<std::uint32_t> (first), static_cast<std::uint32_t> (last)});
         looked_for_ += last - first;
       });
-  makeRoom (looked_for_, places_);
-}
-
-void
-BlockNodes::find (const Eigen::Vector3d &center, double reach)
-{
-  lookAround (center, reach);
-  makeRoom (looked_for_, squared_);
-  const PointGrid &grid = *table_.grid;
-  const Eigen::Vector3f middle = center.cast<float> ();
-  const lanes::Cloud cloud{grid.coordinates (0).data (), grid.coordinates (1).data (), grid.coordinates (2).data ()};
-  count_ = search_.findWithin (cloud, stretches_.data (), stretches_.size (), middle.data (), limitOf (reach),
-                               {places_.data (), squared_.data ()});
 }
 
 float
@@ -72,19 +59,6 @@ BlockNodes::boundOfKth (std::size_t k, double guess) const
 }
 
 void
-BlockNodes::copy ()
-{
-  copyPositions ();
-  for (std::size_t a = 0; a < 3; ++a)
-  {
-    makeRoom (static_cast<std::size_t> (field_.valuesPerNode ()) * count_, normals_[a]);
-    for (std::size_t i = 0; i < count_; ++i)
-      normals_[a][i] = table_.normals[a][places_[i]];
-  }
-  addValues ();
-}
-
-void
 BlockNodes::copyAround (const Eigen::Vector3d &center, double reach)
 {
   lookAround (center, reach);
@@ -100,15 +74,40 @@ BlockNodes::copyWithin (double reach)
 }
 
 void
+BlockNodes::append (const BlockNodes &from, const std::uint32_t *first, const std::uint32_t *last)
+{
+  center_ = from.center_;
+  makeArrays (count_ + static_cast<std::size_t> (last - first) + lanes::MAX_WIDTH);
+  for (; first != last; ++first, ++count_)
+  {
+    places_[count_] = from.places_[*first];
+    for (std::size_t a = 0; a < 3; ++a)
+    {
+      positions_[a][count_] = from.positions_[a][*first];
+      normals_[a][count_] = from.normals_[a][*first];
+    }
+  }
+}
+
+void
+BlockNodes::makeArrays (std::size_t nodes)
+{
+  makeRoom (nodes, places_);
+  for (std::size_t a = 0; a < 3; ++a)
+  {
+    makeRoom (static_cast<std::size_t> (field_.valuesPerNode ()) * nodes, positions_[a]);
+    makeRoom (static_cast<std::size_t> (field_.valuesPerNode ()) * nodes, normals_[a]);
+  }
+}
+
+void
 BlockNodes::copyColumns (double reach, float *squared)
 {
-  const std::size_t room = static_cast<std::size_t> (field_.valuesPerNode ()) * looked_for_;
+  makeArrays (looked_for_);
   lanes::Table table{};
   lanes::Copies copies{places_.data (), {}, squared};
   for (std::size_t a = 0; a < 3; ++a)
   {
-    makeRoom (room, positions_[a]);
-    makeRoom (room, normals_[a]);
     table.columns[a] = table_.grid->coordinates (static_cast<int> (a)).data ();
     table.columns[3 + a] = table_.normals[a].data ();
     copies.columns[a] = positions_[a].data ();
@@ -139,21 +138,6 @@ BlockNodes::addValues ()
       const auto offset = static_cast<float> (sideOf (i) * inverse_unit_ * field_.offsetOf (node (i % count_)));
       positions_[a][i] = positions_[a][i % count_] + offset * normals_[a][i];
     }
-}
-
-void
-BlockNodes::copyPositions ()
-{
-  const auto per_node = static_cast<std::size_t> (field_.valuesPerNode ());
-  const auto scale = static_cast<float> (inverse_unit_);
-  for (std::size_t a = 0; a < 3; ++a)
-  {
-    makeRoom (per_node * count_ + lanes::MAX_WIDTH, positions_[a]);
-    const LargeVector<float> &from = table_.grid->coordinates (static_cast<int> (a));
-    const auto center = static_cast<float> (center_[static_cast<Eigen::Index> (a)]);
-    for (std::size_t i = 0; i < count_; ++i)
-      positions_[a][i] = (from[places_[i]] - center) * scale;
-  }
 }
 
 void

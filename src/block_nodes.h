@@ -40,28 +40,22 @@ public:
   void
   lookAround (const Eigen::Vector3d &center, double reach);
 
-  /** \brief The same, and find them. */
-  void
-  find (const Eigen::Vector3d &center, double reach);
-
   /** \brief The same, and copy them, without what addValues () makes; boundOfKth () may be asked then. */
   void
   copyAround (const Eigen::Vector3d &center, double reach);
 
-  /** \brief Take those of other nodes that a predicate of their place among them chooses. */
-  template <typename ChooseT>
+  /** \brief Forget all nodes, to append others. */
   void
-  select (const BlockNodes &from, ChooseT choose)
+  clear ()
   {
-    center_ = from.center_;
-    places_.resize (from.places_.size ());
     count_ = 0;
-    for (std::size_t i = 0; i < from.count_; ++i)
-    {
-      places_[count_] = from.places_[i];
-      count_ += choose (i) ? 1 : 0;
-    }
   }
+
+  /** \brief Copy some of other nodes, which were copied themselves; then call addValues ().
+   * \param[in] first,last which of them
+   */
+  void
+  append (const BlockNodes &from, const std::uint32_t *first, const std::uint32_t *last);
 
   /** \brief Number of nodes; their off-surface points are not among them. */
   std::size_t
@@ -86,13 +80,6 @@ public:
             table_.grid->coordinates (2)[place]};
   }
 
-  /** \brief Of a node from the center, after find () or copyAround (). */
-  float
-  squaredDistance (std::size_t i) const
-  {
-    return squared_[i];
-  }
-
   /** \brief A distance within which there are k of the nodes of copyAround (), little more than that of the k-th.
    *
    * The exact one is found for every point by itself; a few counts are quicker here than a selection. It is the least
@@ -102,11 +89,8 @@ public:
   double
   boundOfKth (std::size_t k, double guess) const;
 
-  /** \brief Make the arrays; off-surface points come after the nodes. */
-  void
-  copy ();
-
-  /** \brief The same of those whose value points may lie within \a reach, which is not more than was looked for. */
+  /** \brief Make the arrays of those whose value points may lie within \a reach, which is not more than was looked for;
+   * off-surface points come after the nodes. */
   void
   copyWithin (double reach);
 
@@ -114,15 +98,11 @@ public:
   void
   addValues ();
 
-  /** \brief Make those of the nodes' positions only. */
-  void
-  copyPositions ();
-
   /** \brief Make the array of attributes, which are wanted at few points only. */
   void
   copyAttributes ();
 
-  /** \brief A coordinate of the nodes, after copy () or copyPositions (). */
+  /** \brief A coordinate of the nodes that were copied. */
   const float *
   coordinates (std::size_t axis) const
   {
@@ -140,6 +120,10 @@ public:
   view (bool attributes) const;
 
 private:
+  /** \brief Have room for what is copied of so many nodes. */
+  void
+  makeArrays (std::size_t nodes);
+
   /** \param[out] squared room for the distances; nullptr where nobody asks for them */
   void
   copyColumns (double reach, float *squared);

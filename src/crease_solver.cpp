@@ -4,47 +4,61 @@
 #include "plane_meeting.h"
 
 #include <algorithm>
-#include <cmath>
+#include <utility>
 
 namespace erkpa
 {
 
-bool
-moveToCrease (LocalField &local, const std::vector<Side> &sides, double iso, double reach, double tolerance,
-              Eigen::Vector3d &x, std::vector<Eigen::Vector3d> *gradients_there)
+CreaseSolver::CreaseSolver (std::vector<Side> sides, const Eigen::Vector3d &start, double iso, double reach,
+                            double tolerance)
+    : sides_ (std::move (sides)), start_ (start), position_ (start), iso_ (iso), reach_ (reach), tolerance_ (tolerance),
+      gradients_ (sides_.size (), Eigen::Vector3d::Zero ())
+{
+}
+
+void
+CreaseSolver::step (const std::vector<LocalSample> &samples)
 {
   constexpr int STEPS = 10;
   constexpr double PARALLEL = 0.05; // sine of about half the angle at which pieces count as one
-  const Eigen::Vector3d start = x;
-  if (gradients_there != nullptr)
-    gradients_there->resize (sides.size ());
-  std::vector<LocalSample> samples;
-  double squares = 0.0, before = HUGE_VAL; // of the values; the last step
-  for (int step = 0; step < STEPS; ++step)
+  PlaneMeeting meeting;
+  double squares = 0.0;
+  state_ = State::LOST;
+  for (std::size_t i = 0; i < sides_.size (); ++i)
   {
-    PlaneMeeting meeting;
-    squares = 0.0;
-    local.sampleOnSides (x, sides, samples);
-    for (std::size_t i = 0; i < sides.size (); ++i)
-    {
-      const LocalSample &sample = samples[i];
-      if (!sample.isDefined ())
-        return false;
-      meeting.add (sample.gradient, iso - sample.value);
-      squares += std::pow (iso - sample.value, 2);
-      if (gradients_there != nullptr)
-        (*gradients_there)[i] = sample.gradient;
-    }
-    const Eigen::Vector3d move = meeting.point (PARALLEL);
-    if (!((x + move - start).norm () < reach))
-      return false;
-    x += move;
-    const double length = move.norm ();
-    if (length * std::min (1.0, length / before) < tolerance) // the next step is shorter still
-      return true;
-    before = length;
+    if (!samples[i].isDefined ())
+      return;
+    meeting.add (samples[i].gradient, iso_ - samples[i].value);
+    squares += std::pow (iso_ - samples[i].value, 2);
+    gradients_[i] = samples[i].gradient;
   }
-  return std::sqrt (squares) < 1e3 * tolerance;
+  const Eigen::Vector3d move = meeting.point (PARALLEL);
+  if (!((position_ + move - start_).norm () < reach_))
+    return;
+  position_ += move;
+  const double length = move.norm ();
+  if (length * std::min (1.0, length / before_) < tolerance_) // the next step is shorter still
+    state_ = State::ARRIVED;
+  else if (++steps_ < STEPS)
+    state_ = State::AT_WORK;
+  else if (std::sqrt (squares) < 1e3 * tolerance_)
+    state_ = State::ARRIVED;
+  before_ = length;
+}
+
+bool
+moveToCrease (LocalField &local, const std::vector<Side> &sides, double iso, double reach, double tolerance,
+              Eigen::Vector3d &x)
+{
+  CreaseSolver solver (sides, x, iso, reach, tolerance);
+  std::vector<LocalSample> samples;
+  while (solver.isAtWork ())
+  {
+    local.sampleOnSides (solver.position (), sides, samples);
+    solver.step (samples);
+  }
+  x = solver.position ();
+  return solver.hasArrived ();
 }
 
 } // namespace erkpa

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 namespace erkpa
 {
@@ -79,26 +80,18 @@ FaceGroups::hasSeparationAt (const Eigen::Vector3d &x) const
 void
 FaceGroups::listPresent ()
 {
+  for (const int face : present_)
+    place_of_face_[static_cast<std::size_t> (face)] = -1;
   present_.clear ();
-  int last = -1; // neighbours follow each other, and mostly are of one face
   for (const int face : face_of_slot_)
-  {
-    if (face != last && face >= 0 && std::find (present_.begin (), present_.end (), face) == present_.end ())
+    if (face >= 0 && std::exchange (place_of_face_[static_cast<std::size_t> (face)], 0) < 0)
       present_.push_back (face);
-    last = face;
-  }
   std::sort (present_.begin (), present_.end ());
+  for (std::size_t place = 0; place < present_.size (); ++place)
+    place_of_face_[static_cast<std::size_t> (present_[place])] = static_cast<int> (place);
   place_of_slot_.resize (face_of_slot_.size ());
-  int place = -1;
-  last = -1;
   for (std::size_t slot = 0; slot < face_of_slot_.size (); ++slot)
-  {
-    const int face = face_of_slot_[slot];
-    if (face != last)
-      place = placeOf (face);
-    last = face;
-    place_of_slot_[slot] = place;
-  }
+    place_of_slot_[slot] = placeOf (face_of_slot_[slot]);
 }
 
 /** \brief How near the pairs of faces meet, in reach of x; true where some are apart. */
@@ -119,13 +112,6 @@ FaceGroups::findPairs (const Eigen::Vector3d &x)
     any = any || i < separations_;
   }
   return any;
-}
-
-int
-FaceGroups::placeOf (int face) const
-{
-  const auto place = std::lower_bound (present_.begin (), present_.end (), face);
-  return place != present_.end () && *place == face ? static_cast<int> (place - present_.begin ()) : -1;
 }
 
 void
@@ -199,11 +185,8 @@ void
 FaceGroups::countNodes (const std::vector<int> &near)
 {
   nodes_of_place_.assign (present_.size () + 1, 0);
-  for (const int slot : near)
-  {
-    const int place = place_of_slot_[static_cast<std::size_t> (slot)];
+  for (const int place : near)
     ++nodes_of_place_[static_cast<std::size_t> (place) + 1]; // -1 wraps around to 0
-  }
   groups_.clear ();
   for (std::size_t place = 0; place < present_.size (); ++place)
   {

@@ -19,7 +19,10 @@ class FaceGroups
 {
 public:
   /** \param[in] faces null where the field has none */
-  explicit FaceGroups (const FaceMap *faces) : faces_ (faces) {}
+  explicit FaceGroups (const FaceMap *faces)
+      : faces_ (faces), place_of_face_ (faces != nullptr ? faces->count () : 0, -1)
+  {
+  }
 
   /** \brief Prepare for points within \a extent of \a center; false where no faces are apart near them. */
   bool
@@ -50,8 +53,15 @@ public:
     return !near_.empty ();
   }
 
+  /** \brief Which of the faces present a gathered value point is on; -1 for none. */
+  int
+  placeOfSlot (int slot) const
+  {
+    return place_of_slot_[static_cast<std::size_t> (slot)];
+  }
+
   /** \brief Group the nodes as seen from \a x; false where there are no two groups around it.
-   * \param[in] near slots of the value points within REACH of x
+   * \param[in] near placeOfSlot () of the value points within REACH of x
    */
   bool
   select (const Eigen::Vector3d &x, const std::vector<int> &near);
@@ -90,14 +100,6 @@ public:
   std::uint64_t
   facesOf (int group) const;
 
-  /** \brief Whether a gathered value point is of such faces. */
-  bool
-  isOfFaces (int slot, std::uint64_t faces) const
-  {
-    const int place = place_of_slot_[static_cast<std::size_t> (slot)];
-    return place >= 0 && (faces >> place & 1) != 0;
-  }
-
   /** \brief For every sharp surface in reach of \a x the place where it keeps faces apart that is nearest. */
   std::vector<const Meeting *>
   separationsAt (const Eigen::Vector3d &x) const;
@@ -110,12 +112,19 @@ public:
   int
   groupOf (int face) const;
 
+  /** \brief The group of a face that is present; -1 for none. */
+  int
+  groupOfPlace (std::size_t place) const
+  {
+    return group_of_place_[place];
+  }
+
   /** \brief The group of a gathered value point; -1 for none. */
   int
   groupOfSlot (int slot) const
   {
-    const int place = place_of_slot_[static_cast<std::size_t> (slot)];
-    return place < 0 ? -1 : group_of_place_[static_cast<std::size_t> (place)];
+    const int place = placeOfSlot (slot);
+    return place < 0 ? -1 : groupOfPlace (static_cast<std::size_t> (place));
   }
 
   /** \brief Face of a gathered value point; -1 for none. */
@@ -156,8 +165,12 @@ private:
   void
   countNodes (const std::vector<int> &near);
 
+  /** \brief In present_, -1 where it is not there. */
   int
-  placeOf (int face) const;
+  placeOf (int face) const
+  {
+    return face < 0 ? -1 : place_of_face_[static_cast<std::size_t> (face)];
+  }
 
   const FaceMap *faces_;
   Eigen::Vector3d center_ = Eigen::Vector3d::Zero ();
@@ -169,7 +182,8 @@ private:
   std::vector<std::uint32_t> pair_of_meeting_;
   std::vector<int> face_of_slot_;
   std::vector<int> present_;         // faces of the gathered value points, sorted
-  std::vector<int> place_of_slot_;   // in present_, -1 for none
+  std::vector<int> place_of_face_;   // in present_, -1 for none; of all faces
+  std::vector<int> place_of_slot_;   // the same
   std::vector<int> representatives_; // of present_
   std::vector<int> group_of_place_;  // of present_
   std::vector<int> nodes_of_place_;  // around x: of none, and then of present_

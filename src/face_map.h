@@ -46,6 +46,13 @@ public:
     return faces_[static_cast<std::size_t> (node)];
   }
 
+  /** \brief Number of faces. */
+  std::size_t
+  count () const
+  {
+    return known_faces_.size ();
+  }
+
   const std::vector<Meeting> &
   meetings () const
   {

@@ -144,7 +144,10 @@ LocalField::selectGroups (const Eigen::Vector3d &x)
   if (!groups_.hasMeetings ())
     return false;
   support_.listWithin (FaceGroups::REACH * support_.radius (), slots_near_);
-  return groups_.select (x, slots_near_);
+  places_near_.clear ();
+  for (const int slot : slots_near_)
+    places_near_.push_back (groups_.placeOfSlot (slot));
+  return groups_.select (x, places_near_);
 }
 
 bool

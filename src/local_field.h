@@ -264,7 +264,7 @@ private:
   Eigen::Vector3d guess_ = Eigen::Vector3d::Zero ();         // unwarped
   Eigen::Matrix3d unwarping_ = Eigen::Matrix3d::Identity (); // Jacobian of warp^-1 at the point last evaluated
   FaceGroups groups_;
-  std::vector<int> slots_near_; // for them
+  std::vector<int> slots_near_, places_near_; // for them
   FaceVote vote_;
   Eigen::Vector3d slope_ = Eigen::Vector3d::Zero (); // of the fit last asked for its heights
   std::vector<double> heights_;                      // of that fit at the voters

@@ -364,6 +364,55 @@ TEST_F (BlockFieldTest, AgreesWithTheDefinitionWhereFacesMeet)
   }
 }
 
+/** \brief The piece of f of every face goes on beyond its edges, as far as its nodes reach. */
+TEST_F (BlockFieldTest, AgreesWithTheDefinitionOnTheSidesOfCreases)
+{
+  const auto field = boxWithFaces (Order::SPHERICAL);
+  const double spacing = field->spacing ();
+  for (const LocalField::Slope slope : {LocalField::Slope::EXACT, LocalField::Slope::OF_THE_FIT})
+    for (const erkpa::lanes::Engine *engine : allEngines ())
+    {
+      BlockField block (*field, *engine);
+      LocalField local (*field);
+      int compared = 0, undefined = 0;
+      for (const Vector3d &middle : shapes::boxEdgePoints ({0.5, 0.35, 0.25}, 4))
+      {
+        ASSERT_TRUE (block.gather (middle, spacing, true));
+        EXPECT_FALSE (block.addSidePoint (middle + Vector3d::Constant (spacing))) << "not in the ball";
+        std::vector<Vector3d> points;
+        std::vector<BlockField::SideQuestion> questions;
+        std::vector<erkpa::Side> sides;
+        for (int face = 0; face < 6; ++face)
+          sides.push_back ({face, middle});
+        for (std::size_t i = 0; i < 9; ++i)
+        {
+          points.push_back (middle + spacing * randomPoint (0.57));
+          ASSERT_TRUE (block.addSidePoint (points.back ()));
+          for (const erkpa::Side &side : sides)
+            questions.push_back ({i, side.face});
+        }
+        std::vector<BlockField::SideAnswer> answers;
+        block.sampleSides (questions, slope, answers);
+        for (std::size_t q = 0; q < questions.size (); ++q)
+        {
+          std::vector<LocalSample> samples;
+          local.sampleOnSides (points[questions[q].point], {sides[q % sides.size ()]}, samples, slope);
+          ASSERT_TRUE (answers[q].is_settled);
+          const erkpa::FieldSample &quick = answers[q].sample, &exact = samples.front ();
+          ASSERT_EQ (quick.isDefined (), exact.isDefined ());
+          undefined += exact.isDefined () ? 0 : 1;
+          if (!exact.isDefined ())
+            continue;
+          ++compared;
+          EXPECT_NEAR (exact.value, quick.value, 1e-4 * spacing) << engine->name;
+          EXPECT_LT ((exact.gradient - quick.gradient).norm (), 1e-3) << engine->name;
+        }
+      }
+      EXPECT_GT (compared, 1000);
+      EXPECT_GT (undefined, 1000) << "faces that are out of reach";
+    }
+}
+
 /** \brief Where only the side of the surface is asked for, it is that of the faces, with values of fewer fits. */
 TEST_F (BlockFieldTest, TellsTheSideOfTheSurfaceWithoutAskingTheFacesFarFromIt)
 {

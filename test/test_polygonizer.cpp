@@ -7,6 +7,7 @@
 #include "surface_feet.h"
 
 #include <erkpa/marching_cubes.h>
+#include <erkpa/sharp_detection.h>
 
 #include <gtest/gtest.h>
 
@@ -379,6 +380,30 @@ TEST (Polygonizer, EvaluatesAboutAsOftenAsTheSurfaceIsLarge)
   meshOf (*field, resolution (120), &fine);
   const double growth = static_cast<double> (fine.evaluations) / static_cast<double> (coarse.evaluations);
   EXPECT_NEAR (growth, 16.0, 5.0); // as the area in voxels, not as the volume
+}
+
+TEST (Polygonizer, GivesCreasesTheAttributesOfThePointsAroundThem)
+{
+  const Vector3d half (0.5, 0.35, 0.25);
+  auto points = shapes::points (shapes::box (6000, half));
+  points->channels = 3;
+  for (const Eigen::Vector3f &p : points->positions)
+    points->attributes.insert (points->attributes.end (), p.data (), p.data () + 3);
+  erkpa::FieldOptions options;
+  ASSERT_TRUE (erkpa::findSharpSurfaces (*points, erkpa::PointLayout (*points, 0), erkpa::SharpOptions (), 0,
+                                         options.sharp_surfaces)
+                   .ok ());
+  const auto field = shapes::field (points, options);
+  const TriangleMesh mesh = meshOf (*field);
+  ASSERT_GE (mesh.creases.size (), 12u);
+  for (const erkpa::Crease &crease : mesh.creases)
+    for (const int vertex : crease.vertices)
+    {
+      const auto v = static_cast<std::size_t> (vertex);
+      const Eigen::Map<const Eigen::Vector3f> attributes (mesh.attributes.data () + 3 * v);
+      const Vector3d place = mesh.vertices[v].cast<double> () - points->origin;
+      EXPECT_LT ((attributes.cast<double> () - place).norm (), 2.0 * field->spacing ());
+    }
 }
 
 TEST (Polygonizer, NamesTheSettingThatMakesNoSense)
