@@ -1,11 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "crease_lines.h"
 
-#include "threads.h"
+#include "parallel_collect.h"
 
 #include <algorithm>
 #include <map>
-#include <set>
 
 namespace erkpa
 {
@@ -16,21 +15,27 @@ namespace
 /** \brief Those of the edges that the triangles have, sorted. */
 std::vector<VertexPair>
 keepEdges (const std::vector<VertexPair> &edges, const LargeVector<std::array<int, 3>> &triangles,
-           std::size_t vertex_count)
+           std::size_t vertex_count, int threads)
 {
   std::vector<char> on_crease (vertex_count, 0);
   for (const VertexPair &edge : edges)
     on_crease[static_cast<std::size_t> (edge.first)] = on_crease[static_cast<std::size_t> (edge.second)] = 1;
-  std::set<VertexPair> kept;
-  for (const auto &triangle : triangles)
-    for (std::size_t i = 0; i < 3; ++i)
-    {
-      const int a = triangle[i], b = triangle[(i + 1) % 3];
-      if (on_crease[static_cast<std::size_t> (a)] && on_crease[static_cast<std::size_t> (b)] &&
-          std::binary_search (edges.begin (), edges.end (), orderedPair (a, b)))
-        kept.insert (orderedPair (a, b));
-    }
-  return {kept.begin (), kept.end ()};
+  std::vector<VertexPair> kept = parallelCollect<std::vector<VertexPair>> (
+      triangles.size (), threads,
+      [&] (std::size_t first, std::size_t last, std::vector<VertexPair> &part)
+      {
+        for (std::size_t t = first; t < last; ++t)
+          for (std::size_t i = 0; i < 3; ++i)
+          {
+            const int a = triangles[t][i], b = triangles[t][(i + 1) % 3];
+            if (on_crease[static_cast<std::size_t> (a)] && on_crease[static_cast<std::size_t> (b)] &&
+                std::binary_search (edges.begin (), edges.end (), orderedPair (a, b)))
+              part.push_back (orderedPair (a, b));
+          }
+      });
+  std::sort (kept.begin (), kept.end ());
+  kept.erase (std::unique (kept.begin (), kept.end ()), kept.end ());
+  return kept;
 }
 
 /** \brief Follows edges of one sharp surface from vertex to vertex. */
@@ -134,7 +139,7 @@ traceCreases (const ImplicitField &field, const PolygonizerOptions &options, con
 {
   if (edges.empty ())
     return {};
-  const std::vector<VertexPair> kept = keepEdges (edges, triangles, vertices.positions.size ());
+  const std::vector<VertexPair> kept = keepEdges (edges, triangles, vertices.positions.size (), options.threads);
   std::vector<int> surfaces (kept.size (), -1);
   parallelFor (
       kept.size (), options.threads, [&] { return SurfaceNamer (field); },

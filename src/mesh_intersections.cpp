@@ -53,10 +53,11 @@ bool
 hasPiercingSide (const Positions &positions, const Triangle &one, const Triangle &other)
 {
   const Vector3d &a = at (positions, other[0]), &b = at (positions, other[1]), &c = at (positions, other[2]);
+  const Vector3d normal = (b - a).cross (c - a);
   std::array<double, 3> heights{}; // of the vertices that are not shared; those have none
   for (std::size_t i = 0; i < 3; ++i)
     if (!hasVertex (other, one[i]))
-      heights[i] = volume (a, b, c, at (positions, one[i]));
+      heights[i] = normal.dot (at (positions, one[i]) - a);
   for (std::size_t i = 0; i < 3; ++i)
   {
     const std::size_t next = (i + 1) % 3;
