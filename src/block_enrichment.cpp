@@ -79,7 +79,8 @@ BlockEnrichment::canEvaluateAt (const Eigen::Vector3d &x, double reach) const
 
 void
 BlockEnrichment::run (const lanes::Engine &engine, const lanes::Settings &settings, const BlockNodes &nodes,
-                      const std::vector<Eigen::Vector3d> &places, double reach, BlockPoints &points)
+                      const std::vector<Eigen::Vector3d> &places, const std::vector<Eigen::Vector3d> &seen_from,
+                      double reach, BlockPoints &points)
 {
   used_ = 0;
   std::size_t wanted = 0;
@@ -98,6 +99,7 @@ BlockEnrichment::run (const lanes::Engine &engine, const lanes::Settings &settin
     else
       evaluateAtNodes (nodes, values);
     evaluateAtPoints (places, values);
+    evaluateFrom (seen_from, values);
     measureExtentAtPoints (places, values);
   }
   lanes::SharpSurfaces sharp = view ();
@@ -163,6 +165,17 @@ BlockEnrichment::evaluateAtPoints (const std::vector<Eigen::Vector3d> &places, V
 }
 
 void
+BlockEnrichment::evaluateFrom (const std::vector<Eigen::Vector3d> &seen_from, Values &values) const
+{
+  values.theta_seen.clear ();
+  for (const Eigen::Vector3d &place : seen_from)
+    values.theta_seen.push_back (
+        static_cast<float> (surface (values.surface).theta (place + field_.points ().origin) * inverse_unit_));
+  if (!seen_from.empty ())
+    values.theta_seen.resize (seen_from.size () + lanes::MAX_WIDTH, values.theta_seen.back ());
+}
+
+void
 BlockEnrichment::measureExtentAtPoints (const std::vector<Eigen::Vector3d> &places, Values &values) const
 {
   const Extent *const extent = parts_[static_cast<std::size_t> (values.surface)].extent.get ();
@@ -194,6 +207,7 @@ BlockEnrichment::view () const
     lanes::Surface &seen = sharp.surfaces[s];
     seen.theta = values.theta.data ();
     seen.theta_at = values.theta_at.data ();
+    seen.theta_seen = values.theta_seen.empty () ? nullptr : values.theta_seen.data ();
     for (std::size_t a = 0; a < 3; ++a)
     {
       seen.gradient[a] = values.gradient[a].data ();

@@ -8,6 +8,7 @@
 
 #include <Eigen/Core>
 
+#include <algorithm>
 #include <array>
 #include <cstddef>
 #include <cstdint>
@@ -48,14 +49,24 @@ public:
   bool
   canEvaluateAt (const Eigen::Vector3d &x, double reach) const;
 
+  /** \brief Whether all surfaces of a field are such. */
+  static bool
+  canEvaluate (const ImplicitField &field)
+  {
+    const BlockEnrichment all (field, 1.0);
+    return std::all_of (all.is_handled_.begin (), all.is_handled_.end (), [] (char is) { return is != 0; });
+  }
+
   /** \brief Evaluate at points that are near the surfaces.
    * \param[in] places of the points, local frame
+   * \param[in] seen_from where each is seen from: see LocalField::sampleOnSides (); none: from where they are
    * \param[in] reach how far around each its support may go
    * \param[in,out] points what is left unsettled wants LocalField
    */
   void
   run (const lanes::Engine &engine, const lanes::Settings &settings, const BlockNodes &nodes,
-       const std::vector<Eigen::Vector3d> &places, double reach, BlockPoints &points);
+       const std::vector<Eigen::Vector3d> &places, const std::vector<Eigen::Vector3d> &seen_from, double reach,
+       BlockPoints &points);
 
   /** \brief See Enrichment::sideKey (); for a point that was run. */
   std::uint64_t
@@ -75,7 +86,7 @@ private:
   struct Values
   {
     int surface;
-    std::vector<float> theta, theta_at, distance_at;
+    std::vector<float> theta, theta_at, theta_seen, distance_at;
     std::array<std::vector<float>, 3> gradient, gradient_at, away_at;
   };
 
@@ -96,6 +107,9 @@ private:
 
   void
   evaluateAtPoints (const std::vector<Eigen::Vector3d> &places, Values &values) const;
+
+  void
+  evaluateFrom (const std::vector<Eigen::Vector3d> &seen_from, Values &values) const;
 
   void
   measureExtentAtPoints (const std::vector<Eigen::Vector3d> &places, Values &values) const;

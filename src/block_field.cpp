@@ -42,7 +42,8 @@ BlockField::BlockField (const ImplicitField &field, const lanes::Engine &engine,
       faces_ (field, engine, settings_, unit_), enrichment_ (field, unit_),
       plain_ (static_cast<std::size_t> (field.points ().channels), termsOf (settings_.basis),
               field.faces () != nullptr),
-      enriched_ (static_cast<std::size_t> (field.points ().channels), 0, field.faces () != nullptr),
+      enriched_ (static_cast<std::size_t> (field.points ().channels), termsOf (settings_.basis),
+                 field.faces () != nullptr),
       interpolated_ (static_cast<std::size_t> (field.points ().channels), 0, false),
       lattice_ (lattice, engine, static_cast<std::size_t> (field.points ().channels))
 {
@@ -146,6 +147,8 @@ BlockField::clearPoints ()
   enriched_.clear ();
   enriched_at_.clear ();
   enriched_reach_ = 0.0;
+  seen_from_.clear ();
+  side_questions_.clear ();
 }
 
 bool
@@ -154,26 +157,31 @@ BlockField::addPoint (const Eigen::Vector3d &x)
   const bool is_at_faces = has_separations_ && faces_.groups ().hasSeparationAt (x);
   if (is_at_faces && !BlockFaces::canEvaluate (field_))
     return false;
-  const Eigen::Vector3f scaled = ((x - center_) * inverse_unit_).cast<float> ();
   const double reach = enrichment_.isEmpty () ? 0.0 : reachAt (x);
   if (!enrichment_.isAbsentAt (x, reach))
   {
     if (is_at_faces || !enrichment_.canEvaluateAt (x, reach))
       return false;
-    places_.push_back ({Kind::ENRICHED, static_cast<std::uint32_t> (enriched_.size ()), -1});
-    enriched_.add (scaled);
-    enriched_at_.push_back (x);
-    enriched_reach_ = std::max (enriched_reach_, reach);
+    addEnriched (x, reach);
     return true;
   }
   if (lattice_.covers (x))
   {
     places_.push_back ({Kind::INTERPOLATED, static_cast<std::uint32_t> (interpolated_.size ()), -1});
-    interpolated_.add (scaled);
+    interpolated_.add (((x - center_) * inverse_unit_).cast<float> ());
     return true;
   }
   addPlain (x, is_at_faces);
   return true;
+}
+
+void
+BlockField::addEnriched (const Eigen::Vector3d &x, double reach)
+{
+  places_.push_back ({Kind::ENRICHED, static_cast<std::uint32_t> (enriched_.size ()), -1});
+  enriched_.add (((x - center_) * inverse_unit_).cast<float> ());
+  enriched_at_.push_back (x);
+  enriched_reach_ = std::max (enriched_reach_, reach);
 }
 
 void
@@ -268,7 +276,7 @@ BlockField::run ()
   if (enriched_.size () > 0)
   {
     setRadii (enriched_);
-    enrichment_.run (engine_, settings_, nodes_, enriched_at_, enriched_reach_, enriched_);
+    enrichment_.run (engine_, settings_, nodes_, enriched_at_, seen_from_, enriched_reach_, enriched_);
   }
 }
 

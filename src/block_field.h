@@ -143,19 +143,11 @@ public:
   static bool
   canSampleSides (const ImplicitField &field);
 
-  /** \brief Take up a point for sampleSides ().
-   * \return false, and it is not taken up, where it is not in the ball, or other sharp surfaces are near than those
-   * between faces
+  /** \brief Take up a point, and sides whose pieces of f are wanted there.
+   * \return false, and it is not taken up, where it is not in the ball, or cannot be evaluated here
    */
   bool
-  addSidePoint (const Eigen::Vector3d &x);
-
-  /** \brief What is wanted at a point: the piece of f that holds on a face. */
-  struct SideQuestion
-  {
-    std::size_t point;
-    int face;
-  };
+  addSides (const Eigen::Vector3d &x, const std::vector<Side> &sides);
 
   struct SideAnswer
   {
@@ -163,11 +155,9 @@ public:
     bool is_settled = false; ///< else ask LocalField
   };
 
-  /** \brief LocalField::sampleOnSides () at all points.
-   * \param[in] questions those about a point follow each other
-   */
+  /** \brief LocalField::sampleOnSides () at all points, with nothing but addSides () taken up: side after side. */
   void
-  sampleSides (const std::vector<SideQuestion> &questions, LocalField::Slope slope, std::vector<SideAnswer> &answers);
+  sampleSides (LocalField::Slope slope, std::vector<SideAnswer> &answers);
 
   /** \brief See LocalField::keepsApart (). */
   bool
@@ -251,6 +241,23 @@ private:
   void
   addPlain (const Eigen::Vector3d &x, bool is_at_faces);
 
+  void
+  addEnriched (const Eigen::Vector3d &x, double reach);
+
+  /** \brief What is wanted at a point: the piece of f that holds on a face. */
+  struct SideQuestion
+  {
+    std::size_t point;
+    int face;
+  };
+
+  /** \brief Whether the faces at a point have to tell its pieces of f. */
+  bool
+  isOfFaces (const SideQuestion &question) const
+  {
+    return places_[question.point].at_faces >= 0 && isSettled (question.point);
+  }
+
   SideAnswer
   answerOf (std::size_t point, const BlockParts::Part *part, LocalField::Slope slope) const;
 
@@ -295,7 +302,9 @@ private:
   bool has_separations_ = false;
   std::vector<std::uint32_t> at_faces_;      // of plain_
   std::vector<Eigen::Vector3d> enriched_at_; // local frame
-  double enriched_reach_ = 0.0;              // the largest of them
+  std::vector<Eigen::Vector3d> seen_from_;   // of sides: where each of them is seen from
+  std::vector<SideQuestion> side_questions_;
+  double enriched_reach_ = 0.0; // the largest of them
   Eigen::Vector3d center_ = Eigen::Vector3d::Zero ();
   double extent_ = 0.0;        // of the ball
   double center_radius_ = 0.0; // ε in its middle, at most

@@ -23,20 +23,16 @@ SideSampler::sample (const Eigen::Vector3d &x)
 void
 SideSampler::sample (std::vector<Question> &questions, LocalField::Slope slope)
 {
-  std::vector<BlockField::SideQuestion> asked;
-  std::vector<std::size_t> firsts; // of the questions, among those asked
+  std::vector<std::size_t> firsts{0}; // answer of each question, where it has any
   block_.clearPoints ();
   for (const Question &question : questions)
   {
-    firsts.push_back (asked.size ());
-    if (has_block_ && block_.addSidePoint (question.x))
-      for (const Side &side : *question.sides)
-        asked.push_back ({block_.size () - 1, side.face});
+    const bool is_asked = has_block_ && block_.addSides (question.x, *question.sides);
+    firsts.push_back (firsts.back () + (is_asked ? question.sides->size () : 0));
   }
-  firsts.push_back (asked.size ());
   std::vector<BlockField::SideAnswer> answers;
-  if (!asked.empty ())
-    block_.sampleSides (asked, slope, answers);
+  if (firsts.back () > 0)
+    block_.sampleSides (slope, answers);
   for (std::size_t i = 0; i < questions.size (); ++i)
     if (firsts[i] == firsts[i + 1] || !takeAnswers (answers, firsts[i], questions[i]))
       local_.sampleOnSides (questions[i].x, *questions[i].sides, questions[i].samples, slope);

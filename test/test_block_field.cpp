@@ -153,6 +153,49 @@ protected:
     }
   }
 
+  /** \brief The same of the pieces of f on sides of sharp surfaces, seen from places around. */
+  static void
+  expectAgreementOnSides (const ImplicitField &field, const std::vector<Vector3d> &middles, LocalField::Slope slope)
+  {
+    const double spacing = field.spacing ();
+    for (const erkpa::lanes::Engine *engine : allEngines ())
+    {
+      BlockField block (field, *engine);
+      LocalField local (field);
+      int compared = 0, settled = 0;
+      for (const Vector3d &middle : middles)
+      {
+        ASSERT_TRUE (block.gather (middle, spacing, true));
+        std::vector<Vector3d> points;
+        std::vector<std::vector<erkpa::Side>> sides;
+        for (int i = 0; i < 7; ++i)
+        {
+          points.push_back (middle + spacing * randomPoint (0.57));
+          sides.push_back ({{-1, middle + spacing * randomPoint (2.0)}, {-1, middle + spacing * randomPoint (2.0)}});
+          ASSERT_TRUE (block.addSides (points.back (), sides.back ()));
+        }
+        std::vector<BlockField::SideAnswer> answers;
+        block.sampleSides (slope, answers);
+        ASSERT_EQ (answers.size (), 2 * points.size ());
+        for (std::size_t a = 0; a < answers.size (); ++a)
+        {
+          ++compared;
+          if (!answers[a].is_settled)
+            continue;
+          ++settled;
+          std::vector<LocalSample> samples;
+          local.sampleOnSides (points[a / 2], {sides[a / 2][a % 2]}, samples, slope);
+          const double scale = field.options ().constraint == Constraint::FUNCTIONAL ? 10.0 : 1.0;
+          EXPECT_NEAR (samples[0].value, answers[a].sample.value, 1e-4 * scale * spacing) << engine->name;
+          EXPECT_LT ((samples[0].gradient - answers[a].sample.gradient).norm (),
+                     2e-3 * scale * std::max (1.0, samples[0].gradient.norm ()))
+              << engine->name;
+        }
+      }
+      EXPECT_GT (settled, 0.9 * compared) << engine->name;
+    }
+  }
+
 private:
   static void
   addValue (LocalField &local, const Vector3d &x, const BlockField &block, std::size_t i, Difference &worst)
@@ -378,25 +421,23 @@ TEST_F (BlockFieldTest, AgreesWithTheDefinitionOnTheSidesOfCreases)
       for (const Vector3d &middle : shapes::boxEdgePoints ({0.5, 0.35, 0.25}, 4))
       {
         ASSERT_TRUE (block.gather (middle, spacing, true));
-        EXPECT_FALSE (block.addSidePoint (middle + Vector3d::Constant (spacing))) << "not in the ball";
         std::vector<Vector3d> points;
-        std::vector<BlockField::SideQuestion> questions;
         std::vector<erkpa::Side> sides;
         for (int face = 0; face < 6; ++face)
           sides.push_back ({face, middle});
+        EXPECT_FALSE (block.addSides (middle + Vector3d::Constant (spacing), sides)) << "not in the ball";
         for (std::size_t i = 0; i < 9; ++i)
         {
           points.push_back (middle + spacing * randomPoint (0.57));
-          ASSERT_TRUE (block.addSidePoint (points.back ()));
-          for (const erkpa::Side &side : sides)
-            questions.push_back ({i, side.face});
+          ASSERT_TRUE (block.addSides (points.back (), sides));
         }
         std::vector<BlockField::SideAnswer> answers;
-        block.sampleSides (questions, slope, answers);
-        for (std::size_t q = 0; q < questions.size (); ++q)
+        block.sampleSides (slope, answers);
+        ASSERT_EQ (answers.size (), points.size () * sides.size ());
+        for (std::size_t q = 0; q < answers.size (); ++q)
         {
           std::vector<LocalSample> samples;
-          local.sampleOnSides (points[questions[q].point], {sides[q % sides.size ()]}, samples, slope);
+          local.sampleOnSides (points[q / sides.size ()], {sides[q % sides.size ()]}, samples, slope);
           ASSERT_TRUE (answers[q].is_settled);
           const erkpa::FieldSample &quick = answers[q].sample, &exact = samples.front ();
           ASSERT_EQ (quick.isDefined (), exact.isDefined ());
@@ -472,6 +513,26 @@ TEST_F (BlockFieldTest, AgreesWithTheDefinitionWhereSharpSurfacesPass)
       options.sharp_surfaces.push_back (ball);
       SCOPED_TRACE (support);
       expectAgreement (*shapes::field (shapes::box (6000, half), options), placesOnBox (half));
+    }
+}
+
+/** \brief Seen from elsewhere, the piece of f is meant that holds there: kinks go on as if they did not bend. */
+TEST_F (BlockFieldTest, AgreesWithTheDefinitionOnTheSidesOfSharpSurfaces)
+{
+  const Vector3d half (0.5, 0.35, 0.25);
+  for (const Constraint constraint : {Constraint::HERMITE, Constraint::FUNCTIONAL})
+    for (const erkpa::EnrichmentType enrichment : {erkpa::EnrichmentType::KINK, erkpa::EnrichmentType::JUMP})
+    {
+      if (constraint == Constraint::HERMITE && enrichment == erkpa::EnrichmentType::JUMP)
+        continue;
+      FieldOptions options = optionsOf (Order::LINEAR, 0, 0.12);
+      options.constraint = constraint;
+      options.enrichment = enrichment;
+      for (const Eigen::Vector4d &plane : shapes::boxBisectors (half))
+        options.sharp_surfaces.push_back (shapes::plane (plane));
+      const auto field = shapes::field (shapes::box (6000, half), options);
+      for (const LocalField::Slope slope : {LocalField::Slope::EXACT, LocalField::Slope::OF_THE_FIT})
+        expectAgreementOnSides (*field, shapes::boxEdgePoints (half, 3), slope);
     }
 }
 

@@ -355,9 +355,13 @@ TEST_F (Paper, VerticesLieWhereTheFieldChangesItsSignEvenWhereItJumps)
   erkpa::TriangleMesh mesh;
   erkpa::PolygonizerReport report;
   ASSERT_TRUE (erkpa::polygonize (*field, grid, mesh, report).ok ());
-  std::size_t off = 0;
+  std::size_t off = 0, near = 0;
   for (const Eigen::Vector3f &vertex : mesh.vertices)
   {
+    // Beyond the corners of noisy points jumps make sheets of their own, where f hangs on its last digits.
+    if (std::abs ((vertex.cast<double> ().cwiseAbs () - half).maxCoeff ()) > 0.06)
+      continue;
+    ++near;
     bool changes = false;
     for (int axis = 0; axis < 3; ++axis)
     {
@@ -366,7 +370,8 @@ TEST_F (Paper, VerticesLieWhereTheFieldChangesItsSignEvenWhereItJumps)
     }
     off += changes ? 0 : 1;
   }
-  EXPECT_LT (off, mesh.vertices.size () / 200) << "of those in the middle of cells some may be";
+  EXPECT_GT (near, 9 * mesh.vertices.size () / 10);
+  EXPECT_LT (off, near / 400) << "of those in the middle of cells some may be";
 }
 
 TEST_F (Paper, JumpEnrichmentIsRefusedForConstraintsWithoutJumps)

@@ -12,6 +12,10 @@ template <typename B>
 class LaneBalance
 {
 public:
+  LaneBalance () = default;
+
+  LaneBalance (B below, B above) : below_ (below), above_ (above) {}
+
   void
   add (bool is_below, B weight)
   {

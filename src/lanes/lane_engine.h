@@ -74,10 +74,9 @@ private:
       xsimd::sqrt (fit.reach ().squaredNearest ()).store_unaligned (samples_.nearest_distance + first);
     if (samples_.aside != nullptr)
       fit.aside ().store_unaligned (samples_.aside + first);
-    if constexpr (!FitT::IS_ENRICHED)
-      for (int j = 0; j < (samples_.coefficients != nullptr ? FitT::SIZE : 0); ++j)
-        fit.coefficient (j).store_unaligned (samples_.coefficients + static_cast<std::size_t> (j) * points_.stride +
-                                             first);
+    for (int j = 0; j < (samples_.coefficients != nullptr ? FitT::SIZE : 0); ++j)
+      fit.coefficient (j).store_unaligned (samples_.coefficients + static_cast<std::size_t> (j) * points_.stride +
+                                           first);
   }
 
   template <typename FitT>
@@ -192,13 +191,30 @@ evaluateEnriched (const Settings &settings, const Nodes &nodes, const Points &po
         if constexpr (CONSTRAINT == Constraint::HERMITE) // the default, of which one surface is worth a case of its own
           if (near.count == 1)
           {
-            take_with (LaneEnrichedFit<B, BASIS, CONSTRAINT, KernelT, FORM, 1> (settings, near, first, support),
-                       support, first);
+            take_with (
+                LaneEnrichedFit<B, BASIS, CONSTRAINT, KernelT, FORM, 1> (settings, near, first, support, moments),
+                support, first);
             return;
           }
-        take_with (LaneEnrichedFit<B, BASIS, CONSTRAINT, KernelT, FORM, ANY_COUNT> (settings, near, first, support),
-                   support, first);
+        take_with (
+            LaneEnrichedFit<B, BASIS, CONSTRAINT, KernelT, FORM, ANY_COUNT> (settings, near, first, support, moments),
+            support, first);
       });
+}
+
+template <typename B, Basis BASIS, template <typename> class KernelT>
+void
+evaluateEnriched (const Settings &settings, const Nodes &nodes, const Points &points, const SharpSurfaces &sharp,
+                  const Scratch &scratch, const Samples &samples)
+{
+  constexpr Constraint HERMITE = Constraint::HERMITE, FUNCTIONAL = Constraint::FUNCTIONAL;
+  const auto with = [&] (auto evaluate) { evaluate (settings, nodes, points, sharp, scratch, samples); };
+  if (settings.constraint != FUNCTIONAL)
+    with (evaluateEnriched<B, BASIS, HERMITE, LaneEnrichment::KINKS_AND_SQUARES, KernelT>);
+  else if (sharp.jumps)
+    with (evaluateEnriched<B, BASIS, FUNCTIONAL, LaneEnrichment::JUMPS, KernelT>);
+  else
+    with (evaluateEnriched<B, BASIS, FUNCTIONAL, LaneEnrichment::KINKS, KernelT>);
 }
 
 template <typename B, Basis BASIS>
@@ -206,19 +222,10 @@ void
 evaluateEnriched (const Settings &settings, const Nodes &nodes, const Points &points, const SharpSurfaces &sharp,
                   const Scratch &scratch, const Samples &samples)
 {
-  constexpr Constraint HERMITE = Constraint::HERMITE, FUNCTIONAL = Constraint::FUNCTIONAL;
-  if (settings.constraint == FUNCTIONAL && sharp.jumps)
-    evaluateEnriched<B, BASIS, FUNCTIONAL, LaneEnrichment::JUMPS, AnyKernel> (settings, nodes, points, sharp, scratch,
-                                                                              samples);
-  else if (settings.constraint == FUNCTIONAL)
-    evaluateEnriched<B, BASIS, FUNCTIONAL, LaneEnrichment::KINKS, AnyKernel> (settings, nodes, points, sharp, scratch,
-                                                                              samples);
-  else if (settings.kernel == Kernel::PAPER)
-    evaluateEnriched<B, BASIS, HERMITE, LaneEnrichment::KINKS_AND_SQUARES, PaperKernel> (settings, nodes, points, sharp,
-                                                                                         scratch, samples);
+  if (settings.kernel == Kernel::PAPER)
+    evaluateEnriched<B, BASIS, PaperKernel> (settings, nodes, points, sharp, scratch, samples);
   else
-    evaluateEnriched<B, BASIS, HERMITE, LaneEnrichment::KINKS_AND_SQUARES, AnyKernel> (settings, nodes, points, sharp,
-                                                                                       scratch, samples);
+    evaluateEnriched<B, BASIS, AnyKernel> (settings, nodes, points, sharp, scratch, samples);
 }
 
 template <typename B, Basis BASIS, Constraint CONSTRAINT>

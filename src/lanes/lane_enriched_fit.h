@@ -3,9 +3,11 @@
 
 #include "lane_enriched_system.h"
 #include "lane_kinks.h"
+#include "lane_moments.h"
 #include "lane_raises.h"
 #include "lane_reach.h"
 #include "lane_support.h"
+#include "lane_term_sums.h"
 #include "lane_terms.h"
 #include "lane_weights.h"
 
@@ -26,17 +28,20 @@ public:
 
   using Mask = decltype (B () < B ());
   using KinksT = LaneKinks<B, COUNT, FORM>;
+  using MomentsT = LaneMoments<B, BASIS, CONSTRAINT, KernelT>;
   static constexpr int SIZE = Terms<B, BASIS>::SIZE;
   static constexpr bool IS_ENRICHED = true;
 
-  /** \param[in] first place of the evaluation point in the first lane */
+  /** \param[in] first place of the evaluation point in the first lane
+   * \param moments with memory for sums
+   */
   LaneEnrichedFit (const Settings &settings, const LaneSurfaces<B> &near, std::size_t first,
-                   const LaneSupport<B> &support)
+                   const LaneSupport<B> &support, MomentsT &moments)
       : support_ (support), weights_ (settings, support), scale_ (support.inverse ()),
         reach_ (settings, support.radius (), support.squaredRadius ()), kinks_ (near, first, scale_),
         system_ (SIZE + kinks_.terms ())
   {
-    sumMoments ();
+    sumMoments (moments);
     weight_ = system_.M[0];
     spread_ = B (0.0f);
     for (int a = 0; a < 3; ++a)
@@ -77,6 +82,18 @@ public:
     return support_.radius () * sum;
   }
 
+  /** \brief Of polynomial j in the smooth piece of the fit that holds at x, as far as slopes, times ε. */
+  B
+  coefficient (int j) const
+  {
+    if (j == 0)
+      return value ();
+    B sum = c_[j];
+    for (int e = 0; e < (j <= 3 ? kinks_.terms () : 0); ++e)
+      sum = xsimd::fma (c_[SIZE + e], kinks_.slopeAtPoint (e, j - 1), sum);
+    return support_.radius () * sum;
+  }
+
   const LaneReach<B> &
   reach () const
   {
@@ -107,8 +124,12 @@ public:
     WeightChange<B> all, below[KinksT::MAX_COUNT], above[KinksT::MAX_COUNT];
     B by_u[3] = {B (0.0f), B (0.0f), B (0.0f)}, by_radius (0.0f);
     B direct[3] = {by_radius, by_radius, by_radius}; // of eq. (2)
-    weights_.visitNodes ([&] (std::size_t i, B, B t, const B *u)
-                         { addResidual (i, t, u, by_u, by_radius, direct, all, below, above); });
+    if constexpr (IS_HERMITE)
+      weights_.visitNodes ([&] (std::size_t i, B, B t, const B *u)
+                           { addResidual (i, t, u, by_u, by_radius, all, below, above); });
+    else
+      weights_.visitNodes ([&, views = listViews ()] (std::size_t i, B, B t, const B *u)
+                           { addResidual (views, i, t, u, by_u, by_radius, direct, all); });
     for (int a = 0; a < 3; ++a)
     {
       gradient[a] = xsimd::fma (growth_[a], by_radius, c_[1 + a] + direct[a] - by_u[a]);
@@ -182,8 +203,14 @@ private:
   }
 
   void
-  sumMoments ()
+  sumMoments (MomentsT &moments)
   {
+    if constexpr (!IS_HERMITE)
+      if (MomentsT::isNear (support_))
+      {
+        sumColumns (moments);
+        return;
+      }
     weights_.visitNodes (
         [this] (std::size_t i, B squared, B t, const B *u)
         {
@@ -193,6 +220,45 @@ private:
           addNode (i, weight, u);
         });
     reach_.endOnSurface ();
+  }
+
+  /** \brief The same sums of weights times numbers; only eq. (2) has nothing but such. */
+  void
+  sumColumns (MomentsT &moments)
+  {
+    LaneTermSums<B, BASIS, typename MomentsT::ColumnsT, KinksT> sums (kinks_, support_);
+    moments.sum (support_, [&sums] (const auto &columns, std::size_t first, std::size_t count)
+                 { sums.add (columns, first, count); });
+    reach_ = moments.reach (0);
+    for (int s = 0; s < kinks_.surfaces (); ++s)
+      kinks_.weighSides (s, sums.onSide (s, true), sums.onSide (s, false));
+    const B shift[] = {support_.x (0), support_.x (1), support_.x (2)}; // from the origin of the lanes
+    for (int j = 0; j < SIZE; ++j)
+    {
+      for (int k = 0; k <= j; ++k)
+        system_.M[at (j, k)] = scaled (moments.system (0).M[at (j, k)], TermsT::degree (j) + TermsT::degree (k));
+      system_.b[j] = scaled (moments.system (0).b[j], TermsT::degree (j) + 1);
+    }
+    for (int e = 0; e < kinks_.terms (); ++e)
+    {
+      const int degree = static_cast<int> (kinks_.degree (e));
+      B *const row = system_.M + at (SIZE + e, 0);
+      sums.withPolynomials (e, shift, row);
+      for (int j = 0; j < SIZE; ++j)
+        row[j] = scaled (row[j], TermsT::degree (j) + degree);
+      for (int other = 0; other <= e; ++other)
+        row[SIZE + other] = scaled (sums.withTerm (e, other), degree + static_cast<int> (kinks_.degree (other)));
+      system_.b[SIZE + e] = scaled (sums.withHeight (e, shift), degree + 1);
+    }
+  }
+
+  /** \brief From lengths to shares of ε, of which it goes with a power. */
+  B
+  scaled (B sum, int power) const
+  {
+    for (int i = 0; i < power; ++i)
+      sum *= scale_;
+    return sum;
   }
 
   void
@@ -255,10 +321,64 @@ private:
     return floorOfPolynomial (CONSTRAINT, j < SIZE ? TermsT::degree (j) : 2, weight_, spread_);
   }
 
-  /** \brief The residual of the fit at a node, by which the change of its weight moves f; and that change by itself. */
+  /** \brief What the terms of sharp surfaces have in the shape functions and in the fit, by the ways in which lanes see
+   * them. */
+  struct Views
+  {
+    int count = 0;
+    struct
+    {
+      int term;
+      bool from_behind;
+      B of_shape, of_fit;
+    } list[2 * KinksT::MAX_TERMS];
+  };
+
+  Views
+  listViews () const
+  {
+    Views views;
+    kinks_.visitViews (
+        [&] (int term, bool from_behind)
+        {
+          const auto is_seen = from_behind ? kinks_.isBehind (term) : !kinks_.isBehind (term);
+          const auto seen = [&] (B part)
+          { return xsimd::select (is_seen, scaled (part, static_cast<int> (kinks_.degree (term))), B (0.0f)); };
+          views.list[views.count++] = {term, from_behind, seen (a_[SIZE + term]), seen (c_[SIZE + term])};
+        });
+    return views;
+  }
+
+  /** \brief The residual of the fit at a node, by which the change of its weight moves f. */
   void
-  addResidual (std::size_t i, B t, const B *u, B *by_u, B &by_radius, B *direct, WeightChange<B> &all,
-               WeightChange<B> *below, WeightChange<B> *above) const
+  addResidual (const Views &views, std::size_t i, B t, const B *u, B *by_u, B &by_radius, B *direct,
+               WeightChange<B> &all) const
+  {
+    const std::size_t node = support_.node (i);
+    B n[3], R[SIZE];
+    const B weight = weights_.weightAt (i, t);
+    weights_.normal (i, n);
+    TermsT::evaluate (u, t * t, R);
+    B share = combine<TermsT> (a_, R), residual = heightOf (i, u, n) - combine<TermsT> (c_, R);
+    for (int v = 0; v < views.count; ++v)
+      if (const float value = kinks_.valueAtNode (views.list[v].term, views.list[v].from_behind, node); value > 0.0f)
+      {
+        share = xsimd::fma (views.list[v].of_shape, B (value), share);
+        residual = fnma (views.list[v].of_fit, B (value), residual);
+      }
+    residual *= share;
+    for (int a = 0; a < 3; ++a)
+      direct[a] = xsimd::fma (weight * share, n[a], direct[a]);
+    const B slope = weights_.slope (i, t);
+    addForce (slope * residual, t, u, by_u, by_radius);
+    if (kinks_.firstFading () < kinks_.terms ())
+      all.add (slope, u, t);
+  }
+
+  /** \brief The same with gradients, and what the change of the weight is by itself. */
+  void
+  addResidual (std::size_t i, B t, const B *u, B *by_u, B &by_radius, WeightChange<B> &all, WeightChange<B> *below,
+               WeightChange<B> *above) const
   {
     const std::size_t node = support_.node (i);
     B n[3], R[MAX_SIZE], G[KinksT::MAX_TERMS][3];
@@ -272,24 +392,21 @@ private:
       share = xsimd::fma (a_[j], R[j], share);
       residual = fnma (c_[j], R[j], residual);
     }
-    if constexpr (IS_HERMITE)
-    {
-      const B of_gradients = residualOfGradient (u, n, G);
-      residual = xsimd::fma (share, residual, of_gradients);
-      by_radius = xsimd::fma (weight, of_gradients, by_radius);
-    }
-    else
-    {
-      residual *= share;
-      for (int a = 0; a < 3; ++a)
-        direct[a] = xsimd::fma (weight * share, n[a], direct[a]);
-    }
-    const B slope = weights_.slope (i, t), force = slope * residual;
+    const B of_gradients = residualOfGradient (u, n, G);
+    residual = xsimd::fma (share, residual, of_gradients);
+    by_radius = xsimd::fma (weight, of_gradients, by_radius);
+    const B slope = weights_.slope (i, t);
+    addForce (slope * residual, t, u, by_u, by_radius);
+    all.add (slope, u, t);
+    kinks_.visitSides (node, [&] (int s, bool is_below) { (is_below ? below : above)[s].add (slope, u, t); });
+  }
+
+  static void
+  addForce (B force, B t, const B *u, B *by_u, B &by_radius)
+  {
     by_radius = fnma (B (0.5f) * t * t, force, by_radius);
     for (int a = 0; a < 3; ++a)
       by_u[a] = xsimd::fma (force, u[a], by_u[a]);
-    all.add (slope, u, t);
-    kinks_.visitSides (node, [&] (int s, bool is_below) { (is_below ? below : above)[s].add (slope, u, t); });
   }
 
   B

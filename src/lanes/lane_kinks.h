@@ -24,6 +24,7 @@ template <typename B, int COUNT, LaneEnrichment FORM>
 class LaneKinks
 {
 public:
+  using Mask = decltype (B () < B ());
   static constexpr bool HAS_SQUARES = FORM == LaneEnrichment::KINKS_AND_SQUARES,
                         ARE_JUMPS = FORM == LaneEnrichment::JUMPS;
   static constexpr int MAX_COUNT = COUNT == ANY_COUNT ? static_cast<int> (MAX_SURFACES) : COUNT;
@@ -99,6 +100,64 @@ public:
     return there;
   }
 
+  /** \brief Whether some lane sees a term from the front, or from behind: there it has another value at nodes. */
+  bool
+  isSeen (int term, bool from_behind) const
+  {
+    return from_behind ? xsimd::any (isBehind (term)) : xsimd::any (!isBehind (term));
+  }
+
+  /** \brief Calls visit (term, whether from behind) for the ways in which lanes see terms. */
+  template <typename VisitT>
+  void
+  visitViews (VisitT visit) const
+  {
+    for (int term = 0; term < terms (); ++term)
+      for (const bool from_behind : {false, true})
+        if (isSeen (term, from_behind))
+          visit (term, from_behind);
+  }
+
+  Mask
+  isBehind (int term) const
+  {
+    return term < surfaces () ? sign_[term] < B (0.0f) : is_behind_[term - surfaces ()];
+  }
+
+  /** \brief A term at a node as it is seen from one side: a length, but for jumps. */
+  float
+  valueAtNode (int term, bool from_behind, std::size_t node) const
+  {
+    if (term < surfaces ())
+    {
+      const float height = from_behind ? -thetaAtNode (term, node) : thetaAtNode (term, node);
+      const bool is_on = height > 0.0f || (ARE_JUMPS && height >= 0.0f && !from_behind);
+      return is_on ? (ARE_JUMPS ? 1.0f : height) : 0.0f;
+    }
+    const float sign = from_behind ? -1.0f : 1.0f;
+    if constexpr (ARE_JUMPS)
+      return near_.jumpOfCorner (term - surfaces (), node, sign);
+    float height = 0.0f, slope[3] = {};
+    near_.evaluateCorner (term - surfaces (), node, sign, height, slope);
+    return height;
+  }
+
+  /** \brief The same of a surface's term where θ is known. */
+  static B
+  valueAt (B theta, bool from_behind)
+  {
+    const B height = from_behind ? -theta : theta, zero (0.0f);
+    if constexpr (ARE_JUMPS)
+      return xsimd::select (from_behind ? height > zero : height >= zero, B (1.0f), zero);
+    return xsimd::max (height, zero);
+  }
+
+  float
+  thetaAtNode (int surface, std::size_t node) const
+  {
+    return near_.surfaces[surface]->theta[node];
+  }
+
   /** \brief Calls visit (surface, whether it is below) for the surfaces that a node is not on. */
   template <typename VisitT>
   void
@@ -114,6 +173,13 @@ public:
   weigh (std::size_t node, B weight)
   {
     visitSides (node, [&] (int s, bool is_below) { balances_[s].add (is_below, weight); });
+  }
+
+  /** \brief The same of all nodes at once. */
+  void
+  weighSides (int surface, B below, B above)
+  {
+    balances_[surface] = LaneBalance<B> (below, above);
   }
 
   /** \brief Once all nodes are weighed: what counts. */
@@ -197,10 +263,16 @@ public:
            B (2.0f * degree (term)) * fade * radius_gradient;
   }
 
+  /** \brief The power of the length scale that a term goes with. */
+  float
+  degree (int term) const
+  {
+    return term >= squareOf (0) ? 2.0f : ARE_JUMPS ? 0.0f : 1.0f;
+  }
+
 private:
   static constexpr float FADE = 0.1f, MIN_PRESENCE = 1e-6f; // see Enrichment and FieldFit
 
-  using Mask = decltype (B () < B ());
   using Corner = typename LaneSurfaces<B>::Corner;
 
   int
@@ -248,7 +320,8 @@ private:
     const bool is_reversible = ARE_JUMPS || surface.is_plane;
     sign_[s] = is_reversible ? xsimd::select (holds_x, -one, one) : one;
     open_[s] = is_reversible ? xsimd::select (holds_x, one, zero) : zero;
-    const B height = sign_[s] * theta * scale_, on = isOn (height, s);
+    const B height = sign_[s] * theta * scale_,
+            on = isSeenFromElsewhere (s) ? isBeyond (sign_[s] * seen (s)) : isOn (height, s);
     at_x_[s] = ARE_JUMPS ? on : on * height;
     if constexpr (HAS_SQUARES)
       at_x_[squareOf (s)] = theta * theta * scale_ * scale_;
@@ -259,6 +332,26 @@ private:
       if constexpr (HAS_SQUARES)
         slope_at_x_[squareOf (s)][a] = B (2.0f) * theta * scale_ * g;
     }
+  }
+
+  /** \brief θ where the points are seen from: of the smooth pieces of f that one is meant which holds there. */
+  B
+  seen (int s) const
+  {
+    const Surface &surface = *near_.surfaces[s];
+    return B::load_unaligned ((isSeenFromElsewhere (s) ? surface.theta_seen : surface.theta_at) + first_);
+  }
+
+  bool
+  isSeenFromElsewhere (int s) const
+  {
+    return near_.surfaces[s]->theta_seen != nullptr;
+  }
+
+  static B
+  isBeyond (B height)
+  {
+    return xsimd::select (height > B (0.0f), B (1.0f), B (0.0f));
   }
 
   void
@@ -272,10 +365,13 @@ private:
     const auto holds_x = height_a >= zero && height_b >= zero && presence (surfaces () + k) >= one;
     const B sign = ARE_JUMPS || (a.is_plane && b.is_plane) ? xsimd::select (holds_x, -one, one) : one;
     is_behind_[k] = sign < zero;
-    const auto is_b = sign * height_b < sign * height_a;
+    const B seen_a = B (corner.scale_a) * seen (corner.a), seen_b = B (corner.scale_b) * seen (corner.b);
+    const auto is_b = sign * seen_b < sign * seen_a;
     const B scale = sign * xsimd::select (is_b, B (corner.scale_b), B (corner.scale_a));
     const B height = sign * xsimd::select (is_b, height_b, height_a) * scale_;
-    const auto is_on = height > zero || (height >= zero && (ARE_JUMPS ? sign : scale) > zero);
+    const bool is_elsewhere = isSeenFromElsewhere (corner.a);
+    const auto is_on = is_elsewhere ? sign * xsimd::select (is_b, seen_b, seen_a) > zero
+                                    : height > zero || (height >= zero && (ARE_JUMPS ? sign : scale) > zero);
     at_x_[surfaces () + k] = xsimd::select (is_on, ARE_JUMPS ? one : height, zero);
     for (int i = 0; i < 3; ++i)
     {
@@ -308,13 +404,6 @@ private:
   {
     const B one (1.0f), zero (0.0f);
     return xsimd::select (height > zero, one, xsimd::select (height < zero, zero, one - open_[s]));
-  }
-
-  /** \brief The power of the length scale that a term goes with. */
-  float
-  degree (int term) const
-  {
-    return term >= squareOf (0) ? 2.0f : ARE_JUMPS ? 0.0f : 1.0f;
   }
 
   /** \brief How much of a term is in force. */

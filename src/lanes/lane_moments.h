@@ -30,18 +30,38 @@ public:
 
   explicit LaneMoments (const Settings &settings) : settings_ (settings), columns_ (settings) {}
 
+  using ColumnsT = LaneColumns<B, BASIS, CONSTRAINT, KernelT>;
+
+  /** \brief Whether sums about the origin serve all points of a support. */
+  static bool
+  isNear (const LaneSupport<B> &support)
+  {
+    return !xsimd::any (distanceFrom (ORIGIN, support) > farthest (support));
+  }
+
+  /** \brief Sum up for one support that isNear ().
+   * \param[in] take take (columns, first, count) is told of each chunk of its nodes
+   */
+  template <typename TakeT>
+  void
+  sum (const LaneSupport<B> &support, TakeT take)
+  {
+    reaches_[0] = LaneReach<B> (settings_, support.radius (), support.squaredRadius ());
+    sumAbout (ORIGIN, &support, 1, reaches_, take);
+    bringToPoint (support, sums_[0], systems_[0]);
+  }
+
   /** \brief Sum up, and count the nodes, for so many supports with one list of nodes. */
   void
   sum (const LaneSupport<B> *supports, std::size_t count)
   {
     for (std::size_t s = 0; s < count; ++s)
       reaches_[s] = LaneReach<B> (settings_, supports[s].radius (), supports[s].squaredRadius ());
-    const float middle[3] = {0.0f, 0.0f, 0.0f};
-    sumAbout (middle, supports, count, reaches_);
+    sumAbout (ORIGIN, supports, count, reaches_, NOTHING);
     for (std::size_t s = 0; s < count; ++s)
       bringToPoint (supports[s], sums_[s], systems_[s]);
     for (std::size_t s = 0; s < count; ++s)
-      if (const auto is_far = distanceFrom (middle, supports[s]) > farthest (supports[s]); xsimd::any (is_far))
+      if (const auto is_far = distanceFrom (ORIGIN, supports[s]) > farthest (supports[s]); xsimd::any (is_far))
         sumLeft (supports[s], xsimd::select (is_far, B (1.0f), B (0.0f)), systems_[s]);
   }
 
@@ -59,7 +79,8 @@ public:
   }
 
 private:
-  using ColumnsT = LaneColumns<B, BASIS, CONSTRAINT, KernelT>;
+  static constexpr float ORIGIN[3] = {0.0f, 0.0f, 0.0f};
+  static constexpr auto NOTHING = [] (const ColumnsT &, std::size_t, std::size_t) {};
   static constexpr int SIZE = TermsT::SIZE, SLOPES = ColumnsT::SLOPES, COLUMNS = ColumnsT::COLUMNS;
   static constexpr std::size_t WIDTH = B::size, CHUNK = ColumnsT::CHUNK;
 
@@ -100,7 +121,7 @@ private:
       const std::size_t lane = static_cast<std::size_t> (std::find (left, left + WIDTH, 1.0f) - left);
       const float origin[3] = {x[0][lane], x[1][lane], x[2][lane]};
       LaneReach<B> counted_again (settings_, support.radius (), support.squaredRadius ());
-      sumAbout (origin, &support, 1, &counted_again);
+      sumAbout (origin, &support, 1, &counted_again, NOTHING);
       SystemT there;
       bringToPoint (support, sums_[0], there);
       const auto is_taken = is_left > B (0.5f) && (distanceFrom (origin, support) <= farthest (support));
@@ -112,8 +133,9 @@ private:
     }
   }
 
+  template <typename TakeT>
   void
-  sumAbout (const float *origin, const LaneSupport<B> *supports, std::size_t count, LaneReach<B> *reaches)
+  sumAbout (const float *origin, const LaneSupport<B> *supports, std::size_t count, LaneReach<B> *reaches, TakeT take)
   {
     for (std::size_t s = 0; s < count; ++s)
     {
@@ -133,6 +155,7 @@ private:
         columns_.weigh (supports[s], first, nodes, reaches[s]);
         columns_.template addTo<0, COLUMNS> (nodes, columns_.of_nodes, sums_[s].columns);
         addHeights (supports[s], first, nodes, sums_[s]);
+        take (columns_, first, nodes);
       }
     }
   }

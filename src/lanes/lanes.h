@@ -92,6 +92,7 @@ struct Surface
 {
   const float *theta, *gradient[3];       ///< at the value points
   const float *theta_at, *gradient_at[3]; ///< at the evaluation points
+  const float *theta_seen;                ///< where these are seen from; null: from where they are
   bool is_plane;                          ///< |θ| is a distance, and a kink may be seen from either side
   const float *distance_at, *away_at[3];  ///< of a limited one: from its extent, and ∇ of it; null otherwise
   float fade;                             ///< of a limited one: SharpSurfaceParts::fade
@@ -133,7 +134,8 @@ struct Samples
   std::uint32_t *nearest;  ///< place of the nearest node; null: not wanted, like the next ones
   float *nearest_distance; ///< from it
   float *aside;            ///< |centroid of the weighted nodes - x|, in ε
-  float *coefficients;     ///< of the terms in u = (y - x) / ε, times ε: term after term
+  float *coefficients;     ///< of the terms in u = (y - x) / ε, times ε: term after term; where sharp surfaces add
+                           ///< others, value and slope of the piece that holds at x stand for theirs
   std::uint32_t *support;  ///< number of nodes in the support
   std::uint32_t *active;   ///< the sharp surfaces that count there, as bits
   float *gradient[3];
