@@ -78,9 +78,9 @@ BlockEnrichment::canEvaluateAt (const Eigen::Vector3d &x, double reach) const
 }
 
 void
-BlockEnrichment::run (const lanes::Engine &engine, const lanes::Settings &settings, const BlockNodes &nodes,
-                      const std::vector<Eigen::Vector3d> &places, const std::vector<Eigen::Vector3d> &seen_from,
-                      double reach, BlockPoints &points)
+BlockEnrichment::run (const lanes::Engine &engine, const lanes::Settings &settings, const lanes::Nodes &view,
+                      const BlockNodes &nodes, const std::vector<Eigen::Vector3d> &places,
+                      const std::vector<Eigen::Vector3d> &seen_from, double reach, BlockPoints &points)
 {
   used_ = 0;
   std::size_t wanted = 0;
@@ -102,10 +102,10 @@ BlockEnrichment::run (const lanes::Engine &engine, const lanes::Settings &settin
     evaluateFrom (seen_from, values);
     measureExtentAtPoints (places, values);
   }
-  lanes::SharpSurfaces sharp = view ();
+  lanes::SharpSurfaces sharp = viewOfSurfaces ();
   const bool has_all = listPencils (sharp) && wanted <= values_.size ();
   const bool is_function = field_.supportSize ().kind () == SupportSize::Kind::FUNCTION;
-  points.run (engine, settings, nodes.view (settings.gradients), is_function, &sharp);
+  points.run (engine, settings, view, is_function, &sharp);
   if (!has_all)
     std::fill_n (points.states.begin (), points.size (), lanes::State::UNSETTLED);
 }
@@ -196,7 +196,7 @@ BlockEnrichment::measureExtentAtPoints (const std::vector<Eigen::Vector3d> &plac
 }
 
 lanes::SharpSurfaces
-BlockEnrichment::view () const
+BlockEnrichment::viewOfSurfaces () const
 {
   lanes::SharpSurfaces sharp{};
   sharp.count = used_;

@@ -58,13 +58,14 @@ public:
   }
 
   /** \brief Evaluate at points that are near the surfaces.
+   * \param[in] view of the nodes
    * \param[in] places of the points, local frame
    * \param[in] seen_from where each is seen from: see LocalField::sampleOnSides (); none: from where they are
    * \param[in] reach how far around each its support may go
    * \param[in,out] points what is left unsettled wants LocalField
    */
   void
-  run (const lanes::Engine &engine, const lanes::Settings &settings, const BlockNodes &nodes,
+  run (const lanes::Engine &engine, const lanes::Settings &settings, const lanes::Nodes &view, const BlockNodes &nodes,
        const std::vector<Eigen::Vector3d> &places, const std::vector<Eigen::Vector3d> &seen_from, double reach,
        BlockPoints &points);
 
@@ -115,7 +116,7 @@ private:
   measureExtentAtPoints (const std::vector<Eigen::Vector3d> &places, Values &values) const;
 
   lanes::SharpSurfaces
-  view () const;
+  viewOfSurfaces () const;
 
   bool
   listPencils (lanes::SharpSurfaces &sharp) const;

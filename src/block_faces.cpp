@@ -136,7 +136,7 @@ BlockFaces::weighVoters (float radius, Combined &combined)
     shares_[place + 1] = group >= 0 && group < combined.groups ? 1.0f : 0.0f;
   }
   for (std::size_t n = 0; n < count; ++n)
-    weights[n] *= shares_[static_cast<std::size_t> (near[n] + 1)];
+    weights[n] *= shares_[static_cast<std::size_t> (near[n]) + 1];
   listed_ += count;
   combined.last_voter = listed_;
   for (const auto array : {&voters_[0], &voters_[1], &voters_[2], &weights_})

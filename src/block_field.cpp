@@ -72,7 +72,8 @@ BlockField::gather (const Eigen::Vector3d &center, double extent, bool on_surfac
     return false;
   has_separations_ = faces_.gather (center_, all);
   const bool by_nearest = field_.supportSize ().kind () == SupportSize::Kind::NEAREST;
-  enrichment_.gather (center_, (by_nearest ? center_radius_ + 2.0 * all : reach_) + field_.largestOffset ());
+  const double farthest = (by_nearest ? center_radius_ + 2.0 * all : reach_) + field_.largestOffset ();
+  enrichment_.gather (center_, (has_separations_ ? Support::PART_REACH : 1.0) * farthest);
   has_nodes_ = by_nearest;
   if (by_nearest)
     nodes_.addValues ();
@@ -130,11 +131,11 @@ BlockField::widen ()
 }
 
 double
-BlockField::reachAt (const Eigen::Vector3d &x) const
+BlockField::reachAt (const Eigen::Vector3d &x, bool with_parts) const
 {
   const bool is_function = field_.supportSize ().kind () == SupportSize::Kind::FUNCTION;
   const double radius = (is_function ? reach_ : center_radius_) + (x - center_).norm ();
-  return (radius + field_.largestOffset ()) * (1.0 + ROUNDING);
+  return ((with_parts ? Support::PART_REACH : 1.0) * radius + field_.largestOffset ()) * (1.0 + ROUNDING);
 }
 
 void
@@ -157,7 +158,7 @@ BlockField::addPoint (const Eigen::Vector3d &x)
   const bool is_at_faces = has_separations_ && faces_.groups ().hasSeparationAt (x);
   if (is_at_faces && !BlockFaces::canEvaluate (field_))
     return false;
-  const double reach = enrichment_.isEmpty () ? 0.0 : reachAt (x);
+  const double reach = enrichment_.isEmpty () ? 0.0 : reachAt (x, is_at_faces);
   if (!enrichment_.isAbsentAt (x, reach))
   {
     if (is_at_faces || !enrichment_.canEvaluateAt (x, reach))
@@ -228,19 +229,19 @@ BlockField::evaluate (bool gradients)
       interpolated_.leaveOpen ();
     takeUnsettled ();
   }
-  runAll ();
+  runAll (true);
   finishPlain ();
   finishEnriched ();
 }
 
 void
-BlockField::runAll ()
+BlockField::runAll (bool attributes)
 {
-  run ();
+  run (attributes);
   if (!plain_.hasShort () && !enriched_.hasShort ())
     return;
   widen ();
-  run ();
+  run (attributes);
 }
 
 void
@@ -261,22 +262,24 @@ BlockField::takeUnsettled ()
 }
 
 void
-BlockField::run ()
+BlockField::run (bool attributes)
 {
   if (plain_.size () + enriched_.size () > 0)
     copyNodes ();
-  if (settings_.gradients && plain_.size () + enriched_.size () > 0)
+  const bool has_attributes = attributes && settings_.gradients && plain_.size () + enriched_.size () > 0;
+  if (has_attributes)
     nodes_.copyAttributes ();
   if (plain_.size () > 0)
   {
     setRadii (plain_);
     const bool is_function = field_.supportSize ().kind () == SupportSize::Kind::FUNCTION;
-    plain_.run (engine_, settings_, nodes_.view (settings_.gradients), is_function);
+    plain_.run (engine_, settings_, nodes_.view (has_attributes), is_function);
   }
   if (enriched_.size () > 0)
   {
     setRadii (enriched_);
-    enrichment_.run (engine_, settings_, nodes_, enriched_at_, seen_from_, enriched_reach_, enriched_);
+    enrichment_.run (engine_, settings_, nodes_.view (has_attributes), nodes_, enriched_at_, seen_from_,
+                     enriched_reach_, enriched_);
   }
 }
 

@@ -215,9 +215,9 @@ private:
   bool
   findReach (const Eigen::Vector3d &center, double extent, bool on_surface);
 
-  /** \brief How far the support of a point goes, at most. */
+  /** \brief How far the support of a point goes, at most; with parts that of fits to some of the faces as well. */
   double
-  reachAt (const Eigen::Vector3d &x) const;
+  reachAt (const Eigen::Vector3d &x, bool with_parts) const;
 
   void
   setRadii (BlockPoints &points) const;
@@ -230,12 +230,13 @@ private:
   void
   copyNodes ();
 
+  /** \param[in] attributes whether they are wanted, with gradients */
   void
-  run ();
+  run (bool attributes);
 
   /** \brief The same again where ε was larger than expected. */
   void
-  runAll ();
+  runAll (bool attributes);
 
   /** \brief Take up a point where no sharp surface but those between faces is near. */
   void

@@ -9,7 +9,7 @@ namespace erkpa
 bool
 BlockField::canSampleSides (const ImplicitField &field)
 {
-  return canEvaluate (field) && BlockEnrichment::canEvaluate (field) &&
+  return canEvaluate (field) && field.options ().order != Order::CONSTANT && BlockEnrichment::canEvaluate (field) &&
          (field.faces () == nullptr || BlockFaces::canEvaluate (field));
 }
 
@@ -19,7 +19,7 @@ BlockField::addSides (const Eigen::Vector3d &x, const std::vector<Side> &sides)
   if ((x - center_).norm () > extent_)
     return false;
   const bool is_at_faces = has_separations_ && faces_.groups ().hasSeparationAt (x);
-  const double reach = enrichment_.isEmpty () ? 0.0 : reachAt (x);
+  const double reach = enrichment_.isEmpty () ? 0.0 : reachAt (x, is_at_faces);
   const bool is_enriched = !enrichment_.isAbsentAt (x, reach);
   if (is_enriched && (is_at_faces || !enrichment_.canEvaluateAt (x, reach)))
     return false;
@@ -42,7 +42,7 @@ BlockField::sampleSides (LocalField::Slope slope, std::vector<SideAnswer> &answe
 {
   settings_.gradients = slope == LocalField::Slope::EXACT;
   evaluations_ += size ();
-  runAll ();
+  runAll (false);
   for (std::size_t i = 0; i < size (); ++i)
     support_nodes_ += at (i).supports[placeOf (i)];
   refuseUncovered (plain_);

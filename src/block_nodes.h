@@ -109,12 +109,6 @@ public:
     return positions_[axis].data ();
   }
 
-  std::size_t
-  valuePoints () const
-  {
-    return value_points_;
-  }
-
   /** \param[in] attributes whether copyAttributes () was called, and they are wanted */
   lanes::Nodes
   view (bool attributes) const;

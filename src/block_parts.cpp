@@ -55,8 +55,7 @@ BlockParts::gatherNodes (const std::vector<std::uint32_t> &which, const BlockPoi
     return;
   reach_of_parts_ = SPARE * of_parts;
   reach_of_near_ = SPARE * of_near;
-  all_.lookAround (center_, reach_of_parts_);
-  all_.copyWithin (reach_of_parts_);
+  all_.copyAround (center_, reach_of_parts_);
   groups_.assign (all_.count (), [this] (std::size_t i) { return all_.node (i); });
   sortByFace ();
   findNearPoints (static_cast<float> (reach_of_near_ / unit_));
@@ -68,7 +67,7 @@ BlockParts::sortByFace ()
 {
   known_groups_.clear ();
   const auto face_of = [this] (std::size_t i)
-  { return static_cast<std::size_t> (groups_.placeOfSlot (static_cast<int> (i)) + 1); };
+  { return static_cast<std::size_t> (groups_.placeOfSlot (static_cast<int> (i))) + 1; }; // -1 wraps around to 0
   ends_of_faces_.assign (groups_.present () + 1, 0);
   for (std::size_t i = 0; i < all_.count (); ++i)
     ++ends_of_faces_[face_of (i)];

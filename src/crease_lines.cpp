@@ -2,6 +2,7 @@
 #include "crease_lines.h"
 
 #include "parallel_collect.h"
+#include "threads.h"
 
 #include <algorithm>
 #include <map>

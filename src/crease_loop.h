@@ -5,6 +5,7 @@
 #include "crease_solver.h"
 #include "feature_loops.h"
 
+#include <cstddef>
 #include <cstdint>
 #include <optional>
 #include <vector>

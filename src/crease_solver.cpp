@@ -4,6 +4,7 @@
 #include "plane_meeting.h"
 
 #include <algorithm>
+#include <cmath>
 #include <utility>
 
 namespace erkpa
@@ -37,12 +38,13 @@ CreaseSolver::step (const std::vector<LocalSample> &samples)
     return;
   position_ += move;
   const double length = move.norm ();
-  if (length * std::min (1.0, length / before_) < tolerance_) // the next step is shorter still
+  const double shorter = before_ > 0.0 ? std::min (1.0, length / before_) : 1.0; // than this one the next will be
+  const bool is_there = length * shorter < tolerance_;
+  const bool is_last = ++steps_ == STEPS;
+  if (is_there || (is_last && std::sqrt (squares) < 1e3 * tolerance_))
     state_ = State::ARRIVED;
-  else if (++steps_ < STEPS)
+  else if (!is_last)
     state_ = State::AT_WORK;
-  else if (std::sqrt (squares) < 1e3 * tolerance_)
-    state_ = State::ARRIVED;
   before_ = length;
 }
 

@@ -3,7 +3,6 @@
 
 #include "local_field.h"
 
-#include <cmath>
 #include <vector>
 
 namespace erkpa
@@ -74,7 +73,7 @@ private:
   double iso_, reach_, tolerance_;
   State state_ = State::AT_WORK;
   int steps_ = 0;
-  double before_ = HUGE_VAL; // length of the last step
+  double before_ = 0.0; // length of the last step; 0: none yet
   std::vector<Eigen::Vector3d> gradients_;
 };
 

@@ -167,11 +167,12 @@ private:
   std::vector<CreaseLoop> loops_;
 };
 
-/** \brief The ends of runs of loops that lie close together; of single ones where that is of no use. */
+/** \brief The ends of runs of loops that lie close together.
+ * \param[in] side,most of the box around a run, and loops in it
+ */
 std::vector<std::size_t>
-findRuns (const LargeVector<CellLoop> &loops, const SurfaceVertices &vertices, double side)
+findRuns (const LargeVector<CellLoop> &loops, const SurfaceVertices &vertices, double side, std::size_t most)
 {
-  constexpr std::size_t MOST = 64;
   std::vector<std::size_t> ends;
   Eigen::AlignedBox3d box;
   std::size_t first = 0;
@@ -179,7 +180,7 @@ findRuns (const LargeVector<CellLoop> &loops, const SurfaceVertices &vertices, d
   {
     const Eigen::Vector3d &place = vertices.positions[static_cast<std::size_t> (loops[i].ring.front ())];
     box.extend (place);
-    if (i > first && (box.sizes ().maxCoeff () > side || i - first == MOST))
+    if (i > first && (box.sizes ().maxCoeff () > side || i - first == most))
     {
       ends.push_back (i);
       box = Eigen::AlignedBox3d (place);
@@ -198,8 +199,10 @@ meshLoops (const ImplicitField &field, const PolygonizerOptions &options, const 
            double voxel, bool has_border, const SurfaceVertices &vertices, PolygonizerReport &report)
 {
   constexpr double SIDE = 6.0; // voxels
+  constexpr std::size_t MOST = 64;
+  // One point after the other, each loop is quickest with a gathering of its own.
   const std::vector<std::size_t> ends =
-      findRuns (loops, vertices, BlockField::canSampleSides (field) ? SIDE * voxel : 0.0);
+      findRuns (loops, vertices, SIDE * voxel, BlockField::canSampleSides (field) ? MOST : 1);
   std::vector<MeshedLoop> meshed (loops.size ());
   parallelFor (
       ends.size (), options.threads, [&] { return LoopMesher (field, options, voxel, vertices, has_border); },

@@ -26,7 +26,7 @@ struct MeshedLoop
 {
   std::vector<VertexPair> crossings; ///< neighbouring vertices of the loop between which a crease runs
   bool has_center = false;           ///< whether there is a vertex on the crease: then the rest holds
-  Eigen::Vector3d position, normal;
+  Eigen::Vector3d position = Eigen::Vector3d::Zero (), normal = Eigen::Vector3d::Zero ();
   double border_offset = 0.0;
   int face = -1;
   std::vector<float> attributes;

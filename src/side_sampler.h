@@ -31,7 +31,8 @@ public:
     return has_block_ ? block_.keepsApart (face, other, x) : local_.keepsApart (face, other, x);
   }
 
-  /** \brief What LocalField::sampleOnSides () is asked, and its answer. */
+  /** \brief What LocalField::sampleOnSides () is asked, and its answer: values and gradients, the rest may be missing.
+   */
   struct Question
   {
     Eigen::Vector3d x;

@@ -8,6 +8,7 @@
 #include "lane_reach.h"
 #include "lane_support.h"
 #include "lane_term_sums.h"
+#include "lane_term_views.h"
 #include "lane_terms.h"
 #include "lane_weights.h"
 
@@ -128,8 +129,9 @@ public:
       weights_.visitNodes ([&] (std::size_t i, B, B t, const B *u)
                            { addResidual (i, t, u, by_u, by_radius, all, below, above); });
     else
-      weights_.visitNodes ([&, views = listViews ()] (std::size_t i, B, B t, const B *u)
-                           { addResidual (views, i, t, u, by_u, by_radius, direct, all); });
+      weights_.visitNodes (
+          [&, views = ViewsT (kinks_, a_ + SIZE, c_ + SIZE, scale_)] (std::size_t i, B, B t, const B *u)
+          { addResidual (views, i, t, u, by_u, by_radius, direct, all); });
     for (int a = 0; a < 3; ++a)
     {
       gradient[a] = xsimd::fma (growth_[a], by_radius, c_[1 + a] + direct[a] - by_u[a]);
@@ -186,6 +188,7 @@ public:
 
 private:
   using TermsT = Terms<B, BASIS>;
+  using ViewsT = LaneTermViews<B, KinksT>;
   static constexpr int MAX_SIZE = SIZE + KinksT::MAX_TERMS;
 
   /** \brief Number of terms. */
@@ -321,37 +324,9 @@ private:
     return floorOfPolynomial (CONSTRAINT, j < SIZE ? TermsT::degree (j) : 2, weight_, spread_);
   }
 
-  /** \brief What the terms of sharp surfaces have in the shape functions and in the fit, by the ways in which lanes see
-   * them. */
-  struct Views
-  {
-    int count = 0;
-    struct
-    {
-      int term;
-      bool from_behind;
-      B of_shape, of_fit;
-    } list[2 * KinksT::MAX_TERMS];
-  };
-
-  Views
-  listViews () const
-  {
-    Views views;
-    kinks_.visitViews (
-        [&] (int term, bool from_behind)
-        {
-          const auto is_seen = from_behind ? kinks_.isBehind (term) : !kinks_.isBehind (term);
-          const auto seen = [&] (B part)
-          { return xsimd::select (is_seen, scaled (part, static_cast<int> (kinks_.degree (term))), B (0.0f)); };
-          views.list[views.count++] = {term, from_behind, seen (a_[SIZE + term]), seen (c_[SIZE + term])};
-        });
-    return views;
-  }
-
   /** \brief The residual of the fit at a node, by which the change of its weight moves f. */
   void
-  addResidual (const Views &views, std::size_t i, B t, const B *u, B *by_u, B &by_radius, B *direct,
+  addResidual (const ViewsT &views, std::size_t i, B t, const B *u, B *by_u, B &by_radius, B *direct,
                WeightChange<B> &all) const
   {
     const std::size_t node = support_.node (i);
@@ -360,12 +335,7 @@ private:
     weights_.normal (i, n);
     TermsT::evaluate (u, t * t, R);
     B share = combine<TermsT> (a_, R), residual = heightOf (i, u, n) - combine<TermsT> (c_, R);
-    for (int v = 0; v < views.count; ++v)
-      if (const float value = kinks_.valueAtNode (views.list[v].term, views.list[v].from_behind, node); value > 0.0f)
-      {
-        share = xsimd::fma (views.list[v].of_shape, B (value), share);
-        residual = fnma (views.list[v].of_fit, B (value), residual);
-      }
+    views.addTo (node, share, residual);
     residual *= share;
     for (int a = 0; a < 3; ++a)
       direct[a] = xsimd::fma (weight * share, n[a], direct[a]);

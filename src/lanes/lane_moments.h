@@ -24,13 +24,12 @@ class LaneMoments
 public:
   using TermsT = Terms<B, BASIS>;
   using SystemT = LaneSystem<TermsT, B>;
+  using ColumnsT = LaneColumns<B, BASIS, CONSTRAINT, KernelT>;
 
   /** \brief At most so many supports are summed up at once. */
   static constexpr std::size_t SHARED = 4;
 
   explicit LaneMoments (const Settings &settings) : settings_ (settings), columns_ (settings) {}
-
-  using ColumnsT = LaneColumns<B, BASIS, CONSTRAINT, KernelT>;
 
   /** \brief Whether sums about the origin serve all points of a support. */
   static bool

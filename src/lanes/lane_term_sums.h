@@ -12,8 +12,8 @@ namespace erkpa::lanes
 /** \brief The sums of eq. (17) in which terms of sharp surfaces are, for the functional values of eq. (2).
  *
  * Seen from one side of its surface, a term has the same value at a node for all lanes: like the products of
- * polynomials it is a column of numbers (see LaneColumns), which two lanes that see it from either side share with
- * nobody. A sum costs one multiply-add per node, whatever it is of.
+ * polynomials it is a column of numbers (see LaneColumns); where lanes see it from either side, it is two. A sum costs
+ * one multiply-add per node, whatever it is of.
  */
 template <typename B, Basis BASIS, typename ColumnsT, typename KinksT>
 class LaneTermSums
