@@ -454,6 +454,26 @@ TEST_F (BlockFieldTest, AgreesWithTheDefinitionOnTheSidesOfCreases)
     }
 }
 
+/** \brief Fits to one face reach farther than those to all nodes, and meet sharp surfaces there. */
+TEST_F (BlockFieldTest, LeavesPointsToTheDefinitionWhereAFitToOneFaceReachesASharpSurface)
+{
+  const auto with_faces = boxWithFaces (Order::SPHERICAL);
+  FieldOptions options = with_faces->options ();
+  options.sharp_surfaces.push_back (shapes::plane ({1.0, 0.0, 0.0, 0.0}));
+  const auto field = shapes::field (shapes::points (shapes::box (6000, {0.5, 0.35, 0.25})), options);
+  const double radius = field->typicalRadius ();
+  BlockField block (*field);
+  const auto can_tell = [&] (double away)
+  {
+    const Vector3d edge (away, 0.35, 0.25);
+    EXPECT_TRUE (block.gather (edge, 0.1 * radius));
+    return block.addPoint (edge) && block.addSides (edge, {{0, edge}});
+  };
+  EXPECT_FALSE (can_tell (0.9 * radius));
+  EXPECT_FALSE (can_tell (1.5 * radius));
+  EXPECT_TRUE (can_tell (4.5 * radius));
+}
+
 /** \brief Where only the side of the surface is asked for, it is that of the faces, with values of fewer fits. */
 TEST_F (BlockFieldTest, TellsTheSideOfTheSurfaceWithoutAskingTheFacesFarFromIt)
 {
@@ -520,6 +540,10 @@ TEST_F (BlockFieldTest, AgreesWithTheDefinitionWhereSharpSurfacesPass)
 TEST_F (BlockFieldTest, AgreesWithTheDefinitionOnTheSidesOfSharpSurfaces)
 {
   const Vector3d half (0.5, 0.35, 0.25);
+  erkpa::Extent::ConstPtr extent;
+  ASSERT_TRUE (erkpa::makeBoxExtent ({-0.45, -0.4, -0.2}, {0.3, 0.2, 0.3}, extent).ok ());
+  erkpa::SharpSurface::ConstPtr ball; // curved: its kink looks one way only
+  ASSERT_TRUE (erkpa::makeSharpSurface (erkpa::SurfaceModel::SPHERE, {0.5f, 0.0f, 0.0f, 0.2f}, ball).ok ());
   for (const Constraint constraint : {Constraint::HERMITE, Constraint::FUNCTIONAL})
     for (const erkpa::EnrichmentType enrichment : {erkpa::EnrichmentType::KINK, erkpa::EnrichmentType::JUMP})
     {
@@ -528,8 +552,10 @@ TEST_F (BlockFieldTest, AgreesWithTheDefinitionOnTheSidesOfSharpSurfaces)
       FieldOptions options = optionsOf (Order::LINEAR, 0, 0.12);
       options.constraint = constraint;
       options.enrichment = enrichment;
+      options.sharp_surfaces.push_back (ball);
       for (const Eigen::Vector4d &plane : shapes::boxBisectors (half))
-        options.sharp_surfaces.push_back (shapes::plane (plane));
+        options.sharp_surfaces.push_back (plane[3] < 0.0 ? shapes::plane (plane)
+                                                         : erkpa::makeLimited (shapes::plane (plane), extent));
       const auto field = shapes::field (shapes::box (6000, half), options);
       for (const LocalField::Slope slope : {LocalField::Slope::EXACT, LocalField::Slope::OF_THE_FIT})
         expectAgreementOnSides (*field, shapes::boxEdgePoints (half, 3), slope);

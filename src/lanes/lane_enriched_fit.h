@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include "lane_enriched_sums.h"
 #include "lane_enriched_system.h"
 #include "lane_kinks.h"
 #include "lane_moments.h"
 #include "lane_raises.h"
 #include "lane_reach.h"
 #include "lane_support.h"
-#include "lane_term_sums.h"
 #include "lane_term_views.h"
 #include "lane_terms.h"
 #include "lane_weights.h"
@@ -42,7 +42,8 @@ public:
         reach_ (settings, support.radius (), support.squaredRadius ()), kinks_ (near, first, scale_),
         system_ (SIZE + kinks_.terms ())
   {
-    sumMoments (moments);
+    LaneEnrichedSums<B, BASIS, CONSTRAINT, KernelT, KinksT, SystemT> (support_, weights_, kinks_, system_, reach_)
+        .sum (moments);
     weight_ = system_.M[0];
     spread_ = B (0.0f);
     for (int a = 0; a < 3; ++a)
@@ -83,7 +84,8 @@ public:
     return support_.radius () * sum;
   }
 
-  /** \brief Of polynomial j in the smooth piece of the fit that holds at x, as far as slopes, times ε. */
+  /** \brief Value and slope of the smooth piece of the fit that holds at x, as coefficients of polynomials, times ε; of
+   * terms of a higher degree their own. */
   B
   coefficient (int j) const
   {
@@ -190,6 +192,7 @@ private:
   using TermsT = Terms<B, BASIS>;
   using ViewsT = LaneTermViews<B, KinksT>;
   static constexpr int MAX_SIZE = SIZE + KinksT::MAX_TERMS;
+  using SystemT = LaneEnrichedSystem<B, SIZE, MAX_SIZE>;
 
   /** \brief Number of terms. */
   int
@@ -203,117 +206,6 @@ private:
   squareOf (int s) const
   {
     return SIZE + kinks_.squareOf (s);
-  }
-
-  void
-  sumMoments (MomentsT &moments)
-  {
-    if constexpr (!IS_HERMITE)
-      if (MomentsT::isNear (support_))
-      {
-        sumColumns (moments);
-        return;
-      }
-    weights_.visitNodes (
-        [this] (std::size_t i, B squared, B t, const B *u)
-        {
-          const B weight = weights_.weightAt (i, t);
-          reach_.count (squared);
-          kinks_.weigh (support_.node (i), weight);
-          addNode (i, weight, u);
-        });
-    reach_.endOnSurface ();
-  }
-
-  /** \brief The same sums of weights times numbers; only eq. (2) has nothing but such. */
-  void
-  sumColumns (MomentsT &moments)
-  {
-    LaneTermSums<B, BASIS, typename MomentsT::ColumnsT, KinksT> sums (kinks_, support_);
-    moments.sum (support_, [&sums] (const auto &columns, std::size_t first, std::size_t count)
-                 { sums.add (columns, first, count); });
-    reach_ = moments.reach (0);
-    for (int s = 0; s < kinks_.surfaces (); ++s)
-      kinks_.weighSides (s, sums.onSide (s, true), sums.onSide (s, false));
-    const B shift[] = {support_.x (0), support_.x (1), support_.x (2)}; // from the origin of the lanes
-    for (int j = 0; j < SIZE; ++j)
-    {
-      for (int k = 0; k <= j; ++k)
-        system_.M[at (j, k)] = scaled (moments.system (0).M[at (j, k)], TermsT::degree (j) + TermsT::degree (k));
-      system_.b[j] = scaled (moments.system (0).b[j], TermsT::degree (j) + 1);
-    }
-    for (int e = 0; e < kinks_.terms (); ++e)
-    {
-      const int degree = static_cast<int> (kinks_.degree (e));
-      B *const row = system_.M + at (SIZE + e, 0);
-      sums.withPolynomials (e, shift, row);
-      for (int j = 0; j < SIZE; ++j)
-        row[j] = scaled (row[j], TermsT::degree (j) + degree);
-      for (int other = 0; other <= e; ++other)
-        row[SIZE + other] = scaled (sums.withTerm (e, other), degree + static_cast<int> (kinks_.degree (other)));
-      system_.b[SIZE + e] = scaled (sums.withHeight (e, shift), degree + 1);
-    }
-  }
-
-  /** \brief From lengths to shares of ε, of which it goes with a power. */
-  B
-  scaled (B sum, int power) const
-  {
-    for (int i = 0; i < power; ++i)
-      sum *= scale_;
-    return sum;
-  }
-
-  void
-  addNode (std::size_t i, B weight, const B *u)
-  {
-    const std::size_t node = support_.node (i);
-    B n[3], R[MAX_SIZE], G[KinksT::MAX_TERMS][3];
-    weights_.normal (i, n);
-    TermsT::evaluate (u, dot (u, u), R);
-    if constexpr (IS_HERMITE)
-      TermsT::addNormal (weight, u, n, system_.b);
-    const unsigned there = kinks_.evaluate (node, R + SIZE, G);
-    const bool has_height = !IS_HERMITE || weights_.hasLambda ();
-    const B height = heightOf (i, u, n);
-    for (int j = 0; j < size (); ++j)
-    {
-      if (j >= SIZE && (there >> (j - SIZE) & 1u) == 0)
-        continue;
-      const B wr = weight * R[j];
-      for (int k = 0; k <= j; ++k)
-        system_.M[at (j, k)] = xsimd::fma (wr, R[k], system_.M[at (j, k)]);
-      if (has_height)
-        system_.b[j] = xsimd::fma (wr, height, system_.b[j]);
-      if (IS_HERMITE && j >= SIZE)
-        addSlopesOf (j - SIZE, weight, u, n, G);
-    }
-  }
-
-  /** \brief The value that a node asks for, as a share of ε. */
-  B
-  heightOf (std::size_t i, const B *u, const B *n) const
-  {
-    const B lambda = weights_.lambda (i) * scale_;
-    return IS_HERMITE ? lambda : lambda - dot (u, n); // eq. (2)
-  }
-
-  /** \brief The products of the gradients of kink term e with those of the terms before it; polynomials' own follow
-   * later. */
-  void
-  addSlopesOf (int e, B weight, const B *u, const B *n, const B (*G)[3])
-  {
-    const int j = SIZE + e;
-    B weighted[3];
-    for (int a = 0; a < 3; ++a)
-      weighted[a] = weight * G[e][a];
-    for (int a = 0; a < 3; ++a)
-      system_.M[at (j, 1 + a)] += weighted[a];
-    if constexpr (SIZE > 4)
-      system_.M[at (j, 4)] = xsimd::fma (B (2.0f), dot (weighted, u), system_.M[at (j, 4)]);
-    for (int other = 0; other <= e; ++other)
-      system_.M[at (j, SIZE + other)] += dot (weighted, G[other]);
-    system_.b[j] += dot (weighted, n);
   }
 
   B
@@ -334,7 +226,8 @@ private:
     const B weight = weights_.weightAt (i, t);
     weights_.normal (i, n);
     TermsT::evaluate (u, t * t, R);
-    B share = combine<TermsT> (a_, R), residual = heightOf (i, u, n) - combine<TermsT> (c_, R);
+    B share = combine<TermsT> (a_, R),
+      residual = heightOf<CONSTRAINT> (weights_, i, scale_, u, n) - combine<TermsT> (c_, R);
     views.addTo (node, share, residual);
     residual *= share;
     for (int a = 0; a < 3; ++a)
@@ -356,7 +249,7 @@ private:
     weights_.normal (i, n);
     TermsT::evaluate (u, t * t, R);
     kinks_.evaluate (node, R + SIZE, G);
-    B share (0.0f), residual = heightOf (i, u, n);
+    B share (0.0f), residual = heightOf<CONSTRAINT> (weights_, i, scale_, u, n);
     for (int j = 0; j < size (); ++j)
     {
       share = xsimd::fma (a_[j], R[j], share);
@@ -403,7 +296,7 @@ private:
   LaneReach<B> reach_;
   KinksT kinks_;
   B at_x_[MAX_SIZE]; // R(x)
-  LaneEnrichedSystem<B, SIZE, MAX_SIZE> system_;
+  SystemT system_;
   B c_[MAX_SIZE], a_[MAX_SIZE]; // M^-1 b, M^-1 R(x)
   B weight_, spread_, centroid_[3], growth_[3];
 };
