@@ -124,8 +124,8 @@ private:
     for (std::size_t next = 0; next < front_.size (); ++next) // NOLINT(modernize-loop-convert): it grows meanwhile
     {
       listUnknown (links_[static_cast<std::size_t> (front_[next])], to);
-      for (const int node : linked_)
-        if (take (node))
+      for (std::size_t i = 0; i < linked_count_; ++i)
+        if (take (linked_[i]))
           return count;
     }
     return count;
@@ -135,17 +135,16 @@ private:
   void
   listUnknown (const NodeLinks::List &links, int own)
   {
-    linked_.resize (links.size ());
-    std::size_t kept = 0;
+    linked_.resize (std::max (linked_.size (), links.size ())); // never smaller: room need not be cleared again
+    linked_count_ = 0;
     int others = 0;
     for (const int j : links)
     {
       const int known = groups_[static_cast<std::size_t> (j)];
-      linked_[kept] = j;
-      kept += known < 0 ? 1 : 0;
+      linked_[linked_count_] = j;
+      linked_count_ += known < 0 ? 1 : 0;
       others |= static_cast<int> (known > 1) & static_cast<int> (known != own);
     }
-    linked_.resize (kept);
     meets_other_ = meets_other_ || others != 0;
   }
 
@@ -159,7 +158,8 @@ private:
   std::vector<int> ball_;
   std::vector<float> squared_;
   std::vector<int> strangers_, front_, linked_;
-  bool meets_other_ = false; // whether the group last followed is part of one that was left before
+  std::size_t linked_count_ = 0; // of linked_
+  bool meets_other_ = false;     // whether the group last followed is part of one that was left before
 };
 
 /** \brief What the links join, in the whole cloud: a number for each node. */

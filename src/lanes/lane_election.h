@@ -9,14 +9,16 @@ namespace erkpa::lanes
 {
 
 /** \brief FaceVote::electTree () with a voter in each lane: how far from zero the value of each tree is at all of them
- * together. */
-template <typename B, Basis BASIS>
+ * together.
+ * \tparam FACES number of them
+ */
+template <typename B, Basis BASIS, std::size_t FACES>
 class LaneElection
 {
 public:
   explicit LaneElection (const FaceFits &fits) : fits_ (fits)
   {
-    for (std::size_t face = 0; face < fits.count; ++face)
+    for (std::size_t face = 0; face < FACES; ++face)
       for (int j = 0; j < SIZE; ++j)
         coefficients_[face][j] = B (fits.coefficients[face][j]);
   }
@@ -29,7 +31,7 @@ public:
       sums[tree] = B (0.0f);
     for (std::size_t first = 0; first < voters.count; first += B::size)
     {
-      B heights[FaceFits::MAX];
+      B heights[FACES];
       findHeights (voters, first, heights);
       const B weight = B::load_unaligned (voters.weight + first);
       for (std::size_t tree = 0; tree < trees.count; ++tree)
@@ -51,7 +53,7 @@ private:
   void
   findHeights (const Voters &voters, std::size_t first, B *heights) const
   {
-    for (std::size_t face = 0; face < fits_.count; ++face)
+    for (std::size_t face = 0; face < FACES; ++face)
     {
       B u[3], R[SIZE];
       for (std::size_t a = 0; a < 3; ++a)
@@ -61,14 +63,16 @@ private:
     }
   }
 
-  B
-  valueOf (const Trees::Step *steps, const B *heights) const
+  static B
+  valueOf (const Trees::Step *steps, const B *heights)
   {
-    B best[FaceFits::MAX];
-    for (std::size_t face = 0; face < fits_.count; ++face)
+    if constexpr (FACES == 2) // by far the most
+      return steps[0].larger ? xsimd::max (heights[0], heights[1]) : xsimd::min (heights[0], heights[1]);
+    B best[FACES];
+    for (std::size_t face = 0; face < FACES; ++face)
       best[face] = heights[face];
     std::size_t last = 0;
-    for (std::size_t s = 0; s + 1 < fits_.count; ++s)
+    for (std::size_t s = 0; s + 1 < FACES; ++s)
     {
       last = steps[s].face;
       const B other = best[steps[s].other];
@@ -78,8 +82,20 @@ private:
   }
 
   const FaceFits &fits_;
-  B coefficients_[FaceFits::MAX][SIZE];
+  B coefficients_[FACES][SIZE];
 };
+
+template <typename B, Basis BASIS>
+void
+measureTrees (const Voters &voters, const FaceFits &fits, const Trees &trees, float *distances)
+{
+  if (fits.count == 2)
+    LaneElection<B, BASIS, 2> (fits).measure (voters, trees, distances);
+  else if (fits.count == 3)
+    LaneElection<B, BASIS, 3> (fits).measure (voters, trees, distances);
+  else
+    LaneElection<B, BASIS, FaceFits::MAX> (fits).measure (voters, trees, distances);
+}
 
 /** \brief What an Engine does, in vectors of one instruction set. */
 template <typename ArchT>
@@ -90,16 +106,16 @@ measureTrees (const Voters &voters, const FaceFits &fits, const Trees &trees, fl
   switch (fits.basis)
   {
     case Basis::CONSTANT:
-      LaneElection<B, Basis::CONSTANT> (fits).measure (voters, trees, distances);
+      measureTrees<B, Basis::CONSTANT> (voters, fits, trees, distances);
       break;
     case Basis::LINEAR:
-      LaneElection<B, Basis::LINEAR> (fits).measure (voters, trees, distances);
+      measureTrees<B, Basis::LINEAR> (voters, fits, trees, distances);
       break;
     case Basis::SPHERICAL:
-      LaneElection<B, Basis::SPHERICAL> (fits).measure (voters, trees, distances);
+      measureTrees<B, Basis::SPHERICAL> (voters, fits, trees, distances);
       break;
     case Basis::QUADRATIC:
-      LaneElection<B, Basis::QUADRATIC> (fits).measure (voters, trees, distances);
+      measureTrees<B, Basis::QUADRATIC> (voters, fits, trees, distances);
       break;
   }
 }
