@@ -10,36 +10,14 @@
 namespace erkpa
 {
 
-namespace
-{
-
-using Kind = SharpSurfaceParts::Kind;
-
-/** \brief Whether a surface is in force everywhere and cheap to ask. */
-bool
-isPlainModel (const SharpSurfaceParts &parts)
-{
-  return parts.kind == Kind::MODEL ||
-         (parts.plane != nullptr && (parts.kind == Kind::BETWEEN || parts.kind == Kind::REVERSED));
-}
-
-} // namespace
-
 BlockEnrichment::BlockEnrichment (const ImplicitField &field, double unit)
     : field_ (field), inverse_unit_ (1.0 / unit),
       can_evaluate_ (field.options ().constraint != Constraint::OFFSURFACE && field.options ().flatten >= 1.0 &&
                      (field.options ().order == Order::LINEAR || field.options ().order == Order::SPHERICAL))
 {
   for (const SharpSurface::ConstPtr &surface : field.enrichingSurfaces ())
-  {
-    const SpaceWarp *warp = nullptr;
-    is_plane_.push_back (planeBehind (*surface, &warp) != nullptr && warp == nullptr ? 1 : 0);
-    parts_.push_back (surface->parts ());
-    const SharpSurfaceParts whole =
-        parts_.back ().kind == Kind::LIMITED ? parts_.back ().surface->parts () : parts_.back ();
-    is_handled_.push_back (can_evaluate_ && isPlainModel (whole) ? 1 : 0);
-    planes_.push_back (whole.plane);
-  }
+    surfaces_.emplace_back (surface);
+  recalled_.resize (surfaces_.size ());
 }
 
 void
@@ -47,34 +25,36 @@ BlockEnrichment::gather (const Eigen::Vector3d &center, double reach)
 {
   near_.clear ();
   const Eigen::Vector3d position = center + field_.points ().origin;
-  for (std::size_t i = 0; i < field_.enrichingSurfaces ().size (); ++i)
-  {
-    const int index = static_cast<int> (i);
-    if (surface (index).isAbsentIn (position, reach))
-      continue;
-    const Near near{index, is_plane_[i] != 0, is_handled_[i] != 0};
-    if (isInReach (near, center, reach))
-      near_.push_back (near);
-  }
-}
-
-bool
-BlockEnrichment::isInReach (const Near &near, const Eigen::Vector3d &x, double reach) const
-{
-  return !near.is_plane || std::abs (surface (near.surface).theta (x + field_.points ().origin)) <= reach;
+  for (std::size_t i = 0; i < surfaces_.size (); ++i)
+    if (!surfaces_[i].surface ().isAbsentIn (position, reach) && surfaces_[i].canPass (position, reach))
+      near_.push_back (static_cast<int> (i));
 }
 
 bool
 BlockEnrichment::isAbsentAt (const Eigen::Vector3d &x, double reach) const
 {
-  return std::none_of (near_.begin (), near_.end (), [&] (const Near &near) { return isInReach (near, x, reach); });
+  return std::none_of (near_.begin (), near_.end (),
+                       [&] (int near) { return surface (near).canPass (x + field_.points ().origin, reach); });
 }
 
 bool
 BlockEnrichment::canEvaluateAt (const Eigen::Vector3d &x, double reach) const
 {
-  return std::all_of (near_.begin (), near_.end (),
-                      [&] (const Near &near) { return near.is_handled || !isInReach (near, x, reach); });
+  return can_evaluate_ && std::all_of (near_.begin (), near_.end (),
+                                       [&] (int near)
+                                       {
+                                         return surface (near).hasKnownPresence () ||
+                                                !surface (near).canPass (x + field_.points ().origin, reach);
+                                       });
+}
+
+bool
+BlockEnrichment::passes (int surface, const std::vector<Eigen::Vector3d> &places, double reach) const
+{
+  const EnrichingSurface &known = surfaces_[static_cast<std::size_t> (surface)];
+  return known.hasKnownPresence () &&
+         std::any_of (places.begin (), places.end (),
+                      [&] (const Eigen::Vector3d &x) { return known.canPass (x + field_.points ().origin, reach); });
 }
 
 void
@@ -83,49 +63,88 @@ BlockEnrichment::run (const lanes::Engine &engine, const lanes::Settings &settin
                       const std::vector<Eigen::Vector3d> &seen_from, double reach, BlockPoints &points)
 {
   used_ = 0;
-  std::size_t wanted = 0;
-  for (const Near &near : near_)
+  bool has_all = true;
+  for (const int near : near_)
   {
-    if (!near.is_handled || std::none_of (places.begin (), places.end (),
-                                          [&] (const Eigen::Vector3d &x) { return isInReach (near, x, reach); }))
+    if (!passes (near, places, reach))
       continue;
-    if (++wanted > values_.size ())
+    has_all = used_ < lanes::SharpSurfaces::MOST;
+    if (!has_all)
       break;
-    Values &values = values_[used_++];
-    values.surface = near.surface;
-    const SharpPlane *plane = planes_[static_cast<std::size_t> (near.surface)];
-    if (plane != nullptr)
-      evaluatePlaneAtNodes (*plane, nodes, values);
-    else
-      evaluateAtNodes (nodes, values);
+    if (values_.size () == used_)
+      values_.emplace_back ();
+    Values &values = values_[used_];
+    values.surface = near;
+    evaluateAtNodes (nodes, values);
+    if (!hasBothSides (values))
+      continue;
+    ++used_;
     evaluateAtPoints (places, values);
     evaluateFrom (seen_from, values);
     measureExtentAtPoints (places, values);
   }
   lanes::SharpSurfaces sharp = viewOfSurfaces ();
-  const bool has_all = listPencils (sharp) && wanted <= values_.size ();
+  has_all = listPencils (sharp) && has_all;
   const bool is_function = field_.supportSize ().kind () == SupportSize::Kind::FUNCTION;
   points.run (engine, settings, view, is_function, &sharp);
   if (!has_all)
-    std::fill_n (points.states.begin (), points.size (), lanes::State::UNSETTLED);
+    points.leaveOpen ();
+}
+
+bool
+BlockEnrichment::hasBothSides (const Values &values)
+{
+  const auto is_below = [] (float theta) { return theta < 0.0f; };
+  const auto is_above = [] (float theta) { return theta > 0.0f; };
+  return std::any_of (values.theta.begin (), values.theta.end (), is_below) &&
+         std::any_of (values.theta.begin (), values.theta.end (), is_above);
 }
 
 void
-BlockEnrichment::evaluateAtNodes (const BlockNodes &nodes, Values &values) const
+BlockEnrichment::evaluateAtNodes (const BlockNodes &nodes, Values &values)
 {
+  const EnrichingSurface &known = surface (values.surface);
+  if (known.isPlane ())
+  {
+    evaluatePlaneAtNodes (*known.plane (), nodes, values);
+    return;
+  }
   values.theta.resize (nodes.count ());
   for (std::vector<float> &component : values.gradient)
     component.resize (nodes.count ());
-  const SharpSurface &sharp = surface (values.surface);
   for (std::size_t i = 0; i < nodes.count (); ++i)
   {
-    double theta = 0.0;
-    Eigen::Vector3d gradient;
-    sharp.evaluate (nodes.position (i).cast<double> () + field_.points ().origin, theta, gradient);
-    values.theta[i] = static_cast<float> (theta * inverse_unit_);
+    const Eigen::Vector4f both = known.isQuick () ? thetaAtNode (known, nodes, i) : recall (values.surface, nodes, i);
+    values.theta[i] = both[3];
     for (std::size_t a = 0; a < 3; ++a)
-      values.gradient[a][i] = static_cast<float> (gradient[static_cast<Eigen::Index> (a)]);
+      values.gradient[a][i] = both[static_cast<Eigen::Index> (a)];
   }
+}
+
+/** \brief ∇θ and θ. */
+Eigen::Vector4f
+BlockEnrichment::thetaAtNode (const EnrichingSurface &known, const BlockNodes &nodes, std::size_t i) const
+{
+  double theta = 0.0;
+  Eigen::Vector3d gradient;
+  known.surface ().evaluate (nodes.position (i).cast<double> () + field_.points ().origin, theta, gradient);
+  Eigen::Vector4f both;
+  both << gradient.cast<float> (), static_cast<float> (theta * inverse_unit_);
+  return both;
+}
+
+/** \brief The same of a surface that is not quick: blocks that follow each other share most of their nodes. */
+Eigen::Vector4f
+BlockEnrichment::recall (int surface, const BlockNodes &nodes, std::size_t i)
+{
+  constexpr std::size_t PLACES = 1u << 14; // some blocks' nodes
+  std::vector<Recalled> &all = recalled_[static_cast<std::size_t> (surface)];
+  all.resize (PLACES);
+  const auto node = static_cast<std::uint32_t> (nodes.node (i));
+  Recalled &recalled = all[node % PLACES];
+  if (recalled.node != node)
+    recalled = {node, thetaAtNode (this->surface (surface), nodes, i)};
+  return recalled.theta;
 }
 
 /** \brief The same for the most frequent of surfaces; its θ is that of every other place that asks for it, to the last
@@ -151,7 +170,7 @@ BlockEnrichment::evaluateAtPoints (const std::vector<Eigen::Vector3d> &places, V
   values.theta_at.resize (padded);
   for (std::vector<float> &component : values.gradient_at)
     component.resize (padded);
-  const SharpSurface &sharp = surface (values.surface);
+  const SharpSurface &sharp = surface (values.surface).surface ();
   double theta = 0.0;
   Eigen::Vector3d gradient = Eigen::Vector3d::Zero ();
   for (std::size_t i = 0; i < padded; ++i)
@@ -170,7 +189,7 @@ BlockEnrichment::evaluateFrom (const std::vector<Eigen::Vector3d> &seen_from, Va
   values.theta_seen.clear ();
   for (const Eigen::Vector3d &place : seen_from)
     values.theta_seen.push_back (
-        static_cast<float> (surface (values.surface).theta (place + field_.points ().origin) * inverse_unit_));
+        static_cast<float> (surface (values.surface).surface ().theta (place + field_.points ().origin) * inverse_unit_));
   if (!seen_from.empty ())
     values.theta_seen.resize (seen_from.size () + lanes::MAX_WIDTH, values.theta_seen.back ());
 }
@@ -178,8 +197,8 @@ BlockEnrichment::evaluateFrom (const std::vector<Eigen::Vector3d> &seen_from, Va
 void
 BlockEnrichment::measureExtentAtPoints (const std::vector<Eigen::Vector3d> &places, Values &values) const
 {
-  const Extent *const extent = parts_[static_cast<std::size_t> (values.surface)].extent.get ();
-  const std::size_t padded = extent != nullptr ? places.size () + lanes::MAX_WIDTH : 0;
+  const EnrichingSurface &known = surface (values.surface);
+  const std::size_t padded = known.isLimited () ? places.size () + lanes::MAX_WIDTH : 0;
   values.distance_at.resize (padded);
   for (std::vector<float> &component : values.away_at)
     component.resize (padded);
@@ -188,7 +207,7 @@ BlockEnrichment::measureExtentAtPoints (const std::vector<Eigen::Vector3d> &plac
   for (std::size_t i = 0; i < padded; ++i)
   {
     if (i < places.size ())
-      distance = extent->distance (places[i] + field_.points ().origin, &away);
+      distance = known.distanceFromExtent (places[i] + field_.points ().origin, away);
     values.distance_at[i] = static_cast<float> (distance * inverse_unit_);
     for (std::size_t a = 0; a < 3; ++a)
       values.away_at[a][i] = static_cast<float> (away[static_cast<Eigen::Index> (a)]);
@@ -215,8 +234,8 @@ BlockEnrichment::viewOfSurfaces () const
       seen.away_at[a] = values.away_at[a].data ();
     }
     seen.distance_at = values.distance_at.empty () ? nullptr : values.distance_at.data ();
-    seen.fade = static_cast<float> (parts_[static_cast<std::size_t> (values.surface)].fade * inverse_unit_);
-    seen.is_plane = is_plane_[static_cast<std::size_t> (values.surface)] != 0;
+    seen.fade = static_cast<float> (surface (values.surface).fade () * inverse_unit_);
+    seen.is_plane = surface (values.surface).isPlane ();
   }
   return sharp;
 }
@@ -237,7 +256,7 @@ BlockEnrichment::listPencils (lanes::SharpSurfaces &sharp) const
     const int a = place_of (pencil.surfaces[0]), b = place_of (pencil.surfaces[1]), c = place_of (pencil.surfaces[2]);
     if (a < 0 || b < 0 || c < 0)
       continue;
-    if (sharp.pencil_count == lanes::SharpSurfaces::MAX_PENCILS)
+    if (sharp.pencil_count == lanes::SharpSurfaces::MOST)
       return false;
     sharp.pencils[sharp.pencil_count++] = {
         {a, b, c}, static_cast<float> (pencil.scale_a), static_cast<float> (pencil.scale_b)};

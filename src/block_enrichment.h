@@ -3,6 +3,7 @@
 
 #include "block_nodes.h"
 #include "block_points.h"
+#include "enriching_surface.h"
 
 #include <erkpa/implicit_field.h>
 
@@ -20,8 +21,8 @@ namespace erkpa
 /** \brief The sharp surfaces that enrich the field at points of one ball, as the lanes see them: Enrichment's quick
  * double.
  *
- * Kinks and jumps at models, limited or not, and their corners, for gradients and functional values. What is warped or
- * a function is left to LocalField.
+ * Kinks and jumps at surfaces of any kind, limited or not, and their corners, for gradients and functional values.
+ * Classes of the caller's own, and surfaces with more than one extent, are left to LocalField.
  */
 class BlockEnrichment
 {
@@ -54,7 +55,10 @@ public:
   canEvaluate (const ImplicitField &field)
   {
     const BlockEnrichment all (field, 1.0);
-    return std::all_of (all.is_handled_.begin (), all.is_handled_.end (), [] (char is) { return is != 0; });
+    return all.surfaces_.empty () ||
+           (all.can_evaluate_ &&
+            std::all_of (all.surfaces_.begin (), all.surfaces_.end (),
+                         [] (const EnrichingSurface &surface) { return surface.hasKnownPresence (); }));
   }
 
   /** \brief Evaluate at points that are near the surfaces.
@@ -74,14 +78,6 @@ public:
   sideKey (const BlockPoints &points, std::size_t i) const;
 
 private:
-  /** \brief A surface near the ball. */
-  struct Near
-  {
-    int surface;
-    bool is_plane;   ///< |θ| is the distance
-    bool is_handled; ///< cheap to ask
-  };
-
   /** \brief A surface near the points, and θ and ∇θ at nodes and points; with the distance from its extent and ∇ of it
    * there, where it has one. */
   struct Values
@@ -91,17 +87,35 @@ private:
     std::array<std::vector<float>, 3> gradient, gradient_at, away_at;
   };
 
-  const SharpSurface &
+  /** \brief ∇θ and θ at a node. */
+  struct Recalled
+  {
+    std::uint32_t node = ~0u;
+    Eigen::Vector4f theta = Eigen::Vector4f::Zero ();
+  };
+
+  const EnrichingSurface &
   surface (int i) const
   {
-    return *field_.enrichingSurfaces ()[static_cast<std::size_t> (i)];
+    return surfaces_[static_cast<std::size_t> (i)];
   }
 
+  /** \brief Whether some support of this reach around the points may hold nodes on either side. */
   bool
-  isInReach (const Near &near, const Eigen::Vector3d &x, double reach) const;
+  passes (int surface, const std::vector<Eigen::Vector3d> &places, double reach) const;
+
+  /** \brief Whether nodes were found on either side of a surface. */
+  static bool
+  hasBothSides (const Values &values);
 
   void
-  evaluateAtNodes (const BlockNodes &nodes, Values &values) const;
+  evaluateAtNodes (const BlockNodes &nodes, Values &values);
+
+  Eigen::Vector4f
+  thetaAtNode (const EnrichingSurface &known, const BlockNodes &nodes, std::size_t i) const;
+
+  Eigen::Vector4f
+  recall (int surface, const BlockNodes &nodes, std::size_t i);
 
   void
   evaluatePlaneAtNodes (const SharpPlane &plane, const BlockNodes &nodes, Values &values) const;
@@ -124,12 +138,11 @@ private:
   const ImplicitField &field_;
   double inverse_unit_;
   bool can_evaluate_;
-  std::vector<char> is_handled_, is_plane_; // per surface of the field
-  std::vector<const SharpPlane *> planes_;  // the surface itself, where it is one, or what is limited
-  std::vector<SharpSurfaceParts> parts_;
-  std::vector<Near> near_;
-  std::size_t used_ = 0; // of values_, whose memory is kept
-  std::array<Values, lanes::MAX_SURFACES> values_;
+  std::vector<EnrichingSurface> surfaces_;
+  std::vector<int> near_; // the ball: places in surfaces_
+  std::size_t used_ = 0;  // of values_, whose memory is kept
+  std::vector<Values> values_;
+  std::vector<std::vector<Recalled>> recalled_; // by surface, and place of the node
 };
 
 } // namespace erkpa

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "enrichment.h"
 
+#include "enriching_surface.h"
+
 #include <algorithm>
 
 namespace erkpa
@@ -25,15 +27,6 @@ smoothStepSlope (double t)
   return t >= 1.0 ? 0.0 : 6.0 * t * (1.0 - t);
 }
 
-/** \brief Whether θ is a field of its own, behind whatever it is. */
-bool
-isCostly (const SharpSurface &surface)
-{
-  const SharpSurfaceParts parts = surface.parts ();
-  return parts.kind == SharpSurfaceParts::Kind::POINTS || (parts.surface && isCostly (*parts.surface)) ||
-         (parts.other && isCostly (*parts.other));
-}
-
 } // namespace
 
 Enrichment::Enrichment (const ImplicitField &field)
@@ -44,12 +37,11 @@ Enrichment::Enrichment (const ImplicitField &field)
   const bool squares = !jumps_ && field.options ().constraint == Constraint::HERMITE;
   for (const SharpSurface::ConstPtr &surface : field.enrichingSurfaces ())
   {
-    const SpaceWarp *warp = nullptr;
-    const bool is_linear = planeBehind (*surface, &warp) != nullptr && warp == nullptr;
-    const bool is_square_in_basis = is_linear && order == Order::QUADRATIC;
-    is_plane_.push_back (is_linear ? 1 : 0);
-    costly_.push_back (isCostly (*surface) ? 1 : 0);
-    reversible_.push_back (jumps_ || (is_linear && order != Order::CONSTANT) ? 1 : 0);
+    const EnrichingSurface known (surface);
+    const bool is_square_in_basis = known.isPlane () && order == Order::QUADRATIC;
+    is_plane_.push_back (known.isPlane () ? 1 : 0);
+    costly_.push_back (known.isField () ? 1 : 0);
+    reversible_.push_back (jumps_ || (known.isPlane () && order != Order::CONSTANT) ? 1 : 0);
     squared_.push_back (squares && order != Order::CONSTANT && !is_square_in_basis ? 1 : 0);
   }
 }

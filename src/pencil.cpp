@@ -4,8 +4,10 @@
 #include <Eigen/LU>
 #include <Eigen/SVD>
 
+#include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <iterator>
 
 namespace erkpa
 {
@@ -54,6 +56,46 @@ boundsOf (const SharpSurface &surface, double more)
   return bounds;
 }
 
+/** \brief Whether a plane has an extent: then it may be absent where others meet in it. */
+bool
+isLimited (const SharpSurface &surface)
+{
+  for (SharpSurfaceParts parts = surface.parts (); parts.kind != SharpSurfaceParts::Kind::LIMITED;
+       parts = parts.surface->parts ())
+    if (parts.kind != SharpSurfaceParts::Kind::WARPED)
+      return false;
+  return true;
+}
+
+/** \brief The planes through one line, of which every triple is a pencil.
+ *
+ * Of n planes n - 2 triples say all: functions that are linear between the 2 n half-planes around a line have n - 2
+ * dimensions beside the linear ones and the kinks. Each triple that brings a plane of its own adds one.
+ */
+class Lines
+{
+public:
+  /** \brief Whether a triple says what those that were taken before do not. */
+  bool
+  isNew (const std::array<int, 3> &triple)
+  {
+    for (std::vector<int> &line : lines_)
+    {
+      const auto is_other = [&] (int plane) { return std::find (line.begin (), line.end (), plane) == line.end (); };
+      const auto others = std::count_if (triple.begin (), triple.end (), is_other);
+      if (others > 1) // two planes lie in one line only
+        continue;
+      std::copy_if (triple.begin (), triple.end (), std::back_inserter (line), is_other);
+      return others == 1;
+    }
+    lines_.emplace_back (triple.begin (), triple.end ());
+    return true;
+  }
+
+private:
+  std::vector<std::vector<int>> lines_; // their planes
+};
+
 } // namespace
 
 std::vector<Pencil>
@@ -68,9 +110,11 @@ findPencils (const std::vector<SharpSurface::ConstPtr> &surfaces, double toleran
     bounds.push_back (boundsOf (*surfaces[i], tolerance));
   }
   std::vector<Pencil> pencils;
+  Lines lines;
   const int n = static_cast<int> (surfaces.size ());
   const auto plane = [&] (int i) { return planes[static_cast<std::size_t> (i)]; };
   const auto warp = [&] (int i) { return warps[static_cast<std::size_t> (i)]; };
+  const auto is_limited = [&] (int i) { return isLimited (*surfaces[static_cast<std::size_t> (i)]); };
   const auto touch = [&] (int i, int j)
   {
     return plane (i) && plane (j) && warp (i) == warp (j) &&
@@ -81,7 +125,8 @@ findPencils (const std::vector<SharpSurface::ConstPtr> &surfaces, double toleran
       for (int c = b + 1; c < n && touch (a, b); ++c)
       {
         Pencil pencil{{a, b, c}, 0.0, 0.0};
-        if (touch (a, c) && touch (b, c) && pencilOf ({plane (a), plane (b), plane (c)}, tolerance, pencil))
+        if (touch (a, c) && touch (b, c) && pencilOf ({plane (a), plane (b), plane (c)}, tolerance, pencil) &&
+            (is_limited (a) || is_limited (b) || is_limited (c) || lines.isNew ({a, b, c})))
           pencils.push_back (pencil);
       }
   return pencils;

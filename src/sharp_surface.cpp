@@ -33,6 +33,14 @@ public:
     return gradient_ (x);
   }
 
+  SharpSurfaceParts
+  parts () const override
+  {
+    SharpSurfaceParts parts;
+    parts.kind = Kind::FUNCTION;
+    return parts;
+  }
+
 private:
   Theta theta_;
   Gradient gradient_;

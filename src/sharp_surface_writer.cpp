@@ -172,6 +172,7 @@ Writer::membersText (const SharpSurface &surface, const SharpSurfaceParts &parts
     case Kind::WARPED:
       throw NotWritable ("is seen through a warp of space");
     case Kind::LIMITED:
+    case Kind::FUNCTION:
     case Kind::OTHER:
       break;
   }

@@ -5,8 +5,10 @@
 #include "face_tree.h"
 #include "face_vote.h"
 #include "local_field.h"
+#include "pencil.h"
 #include "support.h"
 
+#include <erkpa/face_of_points.h>
 #include <erkpa/sharp_detection.h>
 
 #include <algorithm>
@@ -534,6 +536,82 @@ TEST_F (BlockFieldTest, AgreesWithTheDefinitionWhereSharpSurfacesPass)
       SCOPED_TRACE (support);
       expectAgreement (*shapes::field (shapes::box (6000, half), options), placesOnBox (half));
     }
+}
+
+/** \brief A twist about the z axis, and back. */
+class Twist : public erkpa::SpaceWarp
+{
+public:
+  Vector3d
+  map (const Vector3d &x) const override
+  {
+    return Eigen::AngleAxisd (0.4 * x[2], Vector3d::UnitZ ()) * x;
+  }
+
+  Eigen::Matrix3d
+  jacobian (const Vector3d &x) const override
+  {
+    const Eigen::Matrix3d turn = Eigen::AngleAxisd (0.4 * x[2], Vector3d::UnitZ ()).toRotationMatrix ();
+    Eigen::Matrix3d all = turn;
+    all.col (2) += 0.4 * Vector3d::UnitZ ().cross (turn * x);
+    return all;
+  }
+};
+
+/** \brief Functions, surfaces seen through a warp, faces of points and what lies between faces, limited or not. */
+TEST_F (BlockFieldTest, AgreesWithTheDefinitionWhereSharpSurfacesOfAnyKindPass)
+{
+  const Vector3d half (0.5, 0.35, 0.25);
+  erkpa::Extent::ConstPtr extent;
+  ASSERT_TRUE (erkpa::makeBoxExtent ({-0.6, -0.4, -0.2}, {0.3, 0.2, 0.3}, extent).ok ());
+  const auto twist = std::make_shared<const Twist> ();
+  const auto across = [] (double x) { return shapes::plane ({1.0, 0.1, -0.05, -x}); };
+  erkpa::SharpSurface::ConstPtr ball;
+  ASSERT_TRUE (erkpa::makeSharpSurface (erkpa::SurfaceModel::SPHERE, {0.3f, 0.0f, 0.25f, 0.2f}, ball).ok ());
+  const shapes::Samples cap = shapes::sphere (600, 0.3);
+  std::vector<Eigen::Vector3f> positions, normals;
+  for (std::size_t i = 0; i < cap.positions.size (); ++i)
+  {
+    positions.push_back (cap.positions[i].cast<float> ());
+    normals.push_back (cap.normals[i].cast<float> ());
+  }
+  const auto wave = [] (const Vector3d &x) { return x[1] - 0.1 * std::sin (4.0 * x[0]); };
+  const auto slope = [] (const Vector3d &x) { return Vector3d (-0.4 * std::cos (4.0 * x[0]), 1.0, 0.0); };
+  const std::vector<erkpa::SharpSurface::ConstPtr> surfaces = {
+      erkpa::makeSharpFunction (wave, slope),
+      erkpa::makeWarpedSharpSurface (across (0.2), twist),
+      erkpa::makeWarpedSharpSurface (erkpa::makeLimited (across (-0.1), extent), twist),
+      erkpa::makeLimited (erkpa::makeWarpedSharpSurface (across (-0.3), twist), extent, 0.1),
+      erkpa::makeReversed (ball),
+      erkpa::makeSharpBetween (ball, shapes::plane ({0.6, 0.0, 0.8, -0.2})),
+      erkpa::makeFaceOfPoints (positions, normals, Vector3d (-0.3, 0.0, 0.1), 0)};
+  for (const erkpa::SharpSurface::ConstPtr &surface : surfaces)
+  {
+    FieldOptions options = optionsOf (Order::SPHERICAL, 20);
+    options.sharp_surfaces.push_back (surface);
+    SCOPED_TRACE (&surface - surfaces.data ());
+    const auto field = shapes::field (shapes::box (3000, half), options);
+    EXPECT_TRUE (BlockField::canSampleSides (*field));
+    expectAgreement (*field, placesOnBox (half));
+  }
+}
+
+/** \brief Blocks see more surfaces than a vector takes; only where too many pass one place the definition is asked. */
+TEST_F (BlockFieldTest, AgreesWithTheDefinitionWhereManySharpSurfacesPass)
+{
+  const Vector3d half (0.5, 0.35, 0.25);
+  FieldOptions options = optionsOf (Order::SPHERICAL, 0, 0.08);
+  for (int i = 0; i < 5; ++i)
+    options.sharp_surfaces.push_back (shapes::plane ({std::sin (0.6 * i), std::cos (0.6 * i), 0.0, 0.0}));
+  for (const double x : {-0.45, -0.4, -0.35, -0.3, -0.25, -0.2, 0.2, 0.25, 0.3, 0.35, 0.4, 0.45})
+    options.sharp_surfaces.push_back (shapes::plane ({1.0, 0.0, 0.2, -x}));
+  const shapes::Samples box = shapes::box (3000, half);
+  std::vector<Vector3d> places;
+  for (int i = 0; i < 33; ++i)
+    places.emplace_back (0.025 * i - 0.4, 0.0, half[2]);
+  const auto field = shapes::field (box, options);
+  ASSERT_EQ (field->pencils ().size (), 3u);
+  expectAgreement (*field, places);
 }
 
 /** \brief Seen from elsewhere, the piece of f is meant that holds there: kinks go on as if they did not bend. */

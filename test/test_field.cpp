@@ -1,7 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "field_tests.h"
 
+#include "pencil.h"
+
 #include <algorithm>
+#include <array>
+#include <cmath>
 
 namespace
 {
@@ -129,6 +133,39 @@ TEST_F (Field, ReproducesCornersOfThreePlanesWhateverTheSignAndScaleOfTheBisecto
       EXPECT_NEAR (approximate (*field, concave, x), concave (x), 1e-4);
       EXPECT_NEAR (approximate (*field, saddle, x), saddle (x), 1e-4);
     }
+  }
+}
+
+/** \brief Through a line, three planes make one corner term and five make three: they say all there is to say. */
+TEST_F (Field, ReproducesEveryFanOfTenLinearPiecesBetweenFivePlanesThroughALine)
+{
+  constexpr int RAYS = 10;
+  std::array<Vector3d, RAYS + 1> rays;
+  std::array<double, RAYS + 1> heights{};
+  for (int i = 0; i <= RAYS; ++i)
+  {
+    const double angle = M_PI * (i % 5 * 0.2 + 0.05 * std::sin (3.0 * (i % 5)) + (i % RAYS >= 5 ? 1.0 : 0.0));
+    rays[i] = {std::cos (angle), std::sin (angle), 0.0};
+    heights[i] = 0.6 * std::cos (5.0 * (i % RAYS)) + 0.2;
+  }
+  const Function fan = [&] (const Vector3d &p)
+  {
+    const auto cross = [] (const Vector3d &a, const Vector3d &b) { return a[0] * b[1] - a[1] * b[0]; };
+    int i = 0;
+    while (i + 1 < RAYS && !(cross (rays[i], p) >= 0.0 && cross (rays[i + 1], p) <= 0.0))
+      ++i;
+    const double all = cross (rays[i], rays[i + 1]);
+    return (cross (p, rays[i + 1]) * heights[i] + cross (rays[i], p) * heights[i + 1]) / all + 0.3 * p[2];
+  };
+  FieldOptions options = optionsOf (Order::LINEAR, 0, 0.5);
+  for (const int i : {3, 0, 4, 1, 2})
+    options.sharp_surfaces.push_back (shapes::plane ({-rays[i][1], rays[i][0], 0.0, 0.0}));
+  const auto field = shapes::field (nodesInCube (8000), options);
+  ASSERT_EQ (field->pencils ().size (), 3u);
+  for (int i = 0; i < 20; ++i)
+  {
+    const Vector3d x = randomPoint (0.12); // the line passes the support
+    EXPECT_NEAR (approximate (*field, fan, x), fan (x), 1e-4);
   }
 }
 

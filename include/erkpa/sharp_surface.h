@@ -170,13 +170,14 @@ struct SharpSurfaceParts
 {
   enum class Kind
   {
-    OTHER,    ///< functions, or a class of the caller's own: not known
+    OTHER,    ///< a class of the caller's own: not known
     MODEL,    ///< \a model and \a coefficients
     BETWEEN,  ///< the faces \a surface and \a other
     REVERSED, ///< -θ of \a surface
     WARPED,   ///< \a surface seen through \a warp
     LIMITED,  ///< \a surface within \a extent
-    POINTS    ///< the face \a points
+    POINTS,   ///< the face \a points
+    FUNCTION  ///< of makeSharpFunction ()
   };
 
   Kind kind = Kind::OTHER;

@@ -65,6 +65,17 @@ public:
       storeNearest (support.nodeAt (fit.reach ().squaredNearest ()), first);
   }
 
+  /** \brief Leave the points of a vector to LocalField. */
+  void
+  leaveOpen (std::size_t first) const
+  {
+    for (std::size_t i = first; i < first + B::size; ++i)
+    {
+      samples_.state[i] = State::UNSETTLED;
+      samples_.support[i] = samples_.active[i] = 0;
+    }
+  }
+
 private:
   template <typename FitT>
   void
@@ -181,6 +192,11 @@ evaluateEnriched (const Settings &settings, const Nodes &nodes, const Points &po
       [&] (std::size_t, const LaneSupport<B> &support, std::size_t first)
       {
         const LaneSurfaces<B> near (sharp, first, support.radius ());
+        if (!near.has_all)
+        {
+          engine.leaveOpen (first);
+          return;
+        }
         if (near.count == 0)
         {
           moments.sum (&support, 1);

@@ -21,7 +21,7 @@ template <typename B>
 struct LaneSurfaces
 {
   /** \brief Of jumps; half as many of kinks. */
-  static constexpr int MAX_CORNERS = 2 * static_cast<int> (SharpSurfaces::MAX_PENCILS);
+  static constexpr int MAX_CORNERS = 2 * static_cast<int> (MAX_PENCILS);
 
   /** \brief A term of three surfaces that meet: min (scale_a a, scale_b b), where that is positive; jumps have two. */
   struct Corner
@@ -32,6 +32,7 @@ struct LaneSurfaces
 
   int count = 0, corner_count = 0;
   bool is_limited = false; ///< whether any of them is
+  bool has_all = true;     ///< whether there are no more of them than are kept
   const Surface *surfaces[MAX_SURFACES];
   int numbers[MAX_SURFACES]; ///< places among those that were given
   Corner corners[MAX_CORNERS];
@@ -41,12 +42,16 @@ struct LaneSurfaces
    */
   LaneSurfaces (const SharpSurfaces &sharp, std::size_t first, B radius)
   {
-    int place[MAX_SURFACES]; // of a surface among those kept
+    int place[SharpSurfaces::MOST]; // of a surface among those kept
     for (std::size_t s = 0; s < sharp.count; ++s)
     {
-      place[s] = passesSupport (sharp.surfaces[s], first, radius) ? count : -1;
-      if (place[s] < 0)
+      place[s] = -1;
+      if (!passesSupport (sharp.surfaces[s], first, radius))
         continue;
+      has_all = count < static_cast<int> (MAX_SURFACES);
+      if (!has_all)
+        return;
+      place[s] = count;
       surfaces[count] = &sharp.surfaces[s];
       numbers[count++] = static_cast<int> (s);
       is_limited = is_limited || sharp.surfaces[s].distance_at != nullptr;
@@ -57,6 +62,9 @@ struct LaneSurfaces
       const int a = place[pencil.surfaces[0]], b = place[pencil.surfaces[1]], c = place[pencil.surfaces[2]];
       if (a >= 0 && b >= 0 && c >= 0)
       {
+        has_all = corner_count < static_cast<int> (sharp.jumps ? 2 * MAX_PENCILS : MAX_PENCILS);
+        if (!has_all)
+          return;
         corners[corner_count++] = {a, b, c, pencil.scale_a, pencil.scale_b};
         if (sharp.jumps)
           corners[corner_count++] = {b, c, a, 1.0f, 1.0f};

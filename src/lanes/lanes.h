@@ -84,8 +84,8 @@ struct Points
   std::size_t stride;     ///< from a point's attribute or coefficient to its next one
 };
 
-/** \brief At most so many sharp surfaces enrich the points of one call. */
-constexpr std::size_t MAX_SURFACES = 6;
+/** \brief At most so many sharp surfaces, and corners, enrich the points of one vector; others are State::UNSETTLED. */
+constexpr std::size_t MAX_SURFACES = 6, MAX_PENCILS = 4;
 
 /** \brief A sharp surface, and θ and ∇θ of it. */
 struct Surface
@@ -108,13 +108,13 @@ struct Pencil
 /** \brief Those that pass near the points; not with Constraint::VALUES. */
 struct SharpSurfaces
 {
-  static constexpr std::size_t MAX_PENCILS = 4;
+  static constexpr std::size_t MOST = 30; ///< of either
 
   std::size_t count; ///< 0: none, and no enrichment
   bool jumps;        ///< the field jumps across them: functional values only
-  Surface surfaces[MAX_SURFACES];
+  Surface surfaces[MOST];
   std::size_t pencil_count;
-  Pencil pencils[MAX_PENCILS];
+  Pencil pencils[MOST];
 };
 
 enum class State : std::uint8_t
