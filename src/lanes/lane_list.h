@@ -35,8 +35,7 @@ public:
   void
   take (const float *middle, float reach, std::size_t value_points)
   {
-    const float *const all[Scratch::COLUMNS] = {nodes_->x,  nodes_->y,  nodes_->z,      nodes_->nx,
-                                                nodes_->ny, nodes_->nz, nodes_->lambda, nodes_->confidence};
+    const Columns columns (*nodes_);
     const B limit (reach * reach);
     std::size_t listed = 0, first = 0;
     const auto list = [&] (std::size_t left)
@@ -44,15 +43,15 @@ public:
       B x[3], d[3];
       for (std::size_t a = 0; a < 3; ++a)
       {
-        x[a] = B::load_unaligned (all[a] + first);
+        x[a] = B::load_unaligned (columns.all[a] + first);
         d[a] = x[a] - B (middle[a]);
       }
       const Packing<B> packing (limit - dot (d, d), left);
       for (std::size_t a = 0; a < 3; ++a)
         packing.pack (x[a], near_[a] + listed);
       for (std::size_t column = 3; column < COLUMNS; ++column)
-        if (all[column] != nullptr)
-          packing.pack (Packing<B>::load (all[column] + first, left), near_[column] + listed);
+        if (columns.all[column] != nullptr)
+          packing.pack (Packing<B>::load (columns.all[column] + first, left), near_[column] + listed);
       packing.packNumbers (first, numbers_ + listed);
       listed += packing.size ();
     };
@@ -65,25 +64,33 @@ public:
       --on_surface_;
   }
 
-  /** \brief Only nodes on the surface are listed: keep those of which keeps (i) is true. */
+  /** \brief Only nodes on the surface are listed: keep those of which keeps (i, how many are kept) is true. What they
+   * have does not follow. */
   template <typename KeepsT>
   void
   keep (KeepsT keeps)
   {
+    // The compiler cannot know that the list does not lie where what is said of it goes.
+    std::uint32_t *const numbers = numbers_;
     std::size_t kept = 0;
-    for (std::size_t first = 0; first < size_; first += WIDTH)
+    for (std::size_t i = 0, count = size_; i < count; ++i)
     {
-      unsigned lanes = 0;
-      for (std::size_t i = first; i < std::min (size_, first + WIDTH); ++i)
-        lanes |= (keeps (i) ? 1u : 0u) << (i - first);
-      const Packing<B> packing (lanes);
-      for (std::size_t column = 0; column < Scratch::COLUMNS; ++column)
-        if (near (column) != nullptr)
-          packing.pack (B::load_unaligned (near_[column] + first), near_[column] + kept);
-      packing.pack (numbers_ + first, numbers_ + kept);
-      kept += packing.size ();
+      const bool is_kept = keeps (i, kept);
+      numbers[kept] = numbers[i];
+      kept += is_kept ? 1 : 0; // no branch, which none could foretell
     }
     size_ = on_surface_ = kept;
+  }
+
+  /** \brief Copy all that the listed nodes have. */
+  void
+  fetch ()
+  {
+    fetch<0, LAMBDA> ();
+    if (nodes_->lambda != nullptr)
+      fetch<LAMBDA, 1> ();
+    if (nodes_->confidence != nullptr)
+      fetch<LAMBDA + 1, 1> ();
   }
 
   std::size_t
@@ -116,6 +123,36 @@ public:
 
 private:
   static constexpr std::size_t LAMBDA = 6; // column
+
+  /** \brief The arrays of what all nodes have. */
+  struct Columns
+  {
+    const float *all[Scratch::COLUMNS];
+
+    explicit Columns (const Nodes &nodes)
+        : all{nodes.x, nodes.y, nodes.z, nodes.nx, nodes.ny, nodes.nz, nodes.lambda, nodes.confidence}
+    {
+    }
+  };
+
+  /** \brief The same of some columns, which all have. */
+  template <std::size_t FIRST, std::size_t COUNT>
+  void
+  fetch ()
+  {
+    const Columns columns (*nodes_);
+    const std::uint32_t *const numbers = numbers_;
+    const float *from[COUNT];
+    float *to[COUNT];
+    for (std::size_t c = 0; c < COUNT; ++c)
+    {
+      from[c] = columns.all[FIRST + c];
+      to[c] = near_[FIRST + c];
+    }
+    for (std::size_t i = 0, count = size_; i < count; ++i)
+      for (std::size_t c = 0, node = numbers[i]; c < COUNT; ++c)
+        to[c][i] = from[c][node];
+  }
 
   const Nodes *nodes_;
   std::uint32_t *numbers_;

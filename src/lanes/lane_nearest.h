@@ -40,25 +40,23 @@ public:
 
   /** \param[in] bound squared distance within which the k-th is expected
    * \param[in] in_bound how many there are
-   * \param[in] guess about the square of the k-th
    */
   void
-  find (B bound, B in_bound, B guess)
+  find (B bound, B in_bound)
   {
     constexpr int STEPS = 10, EVEN = 5;
-    B low (0.0f), high = bound, in_low (0.0f), in_high = in_bound, middle = xsimd::min (guess, high);
+    B low (0.0f), high = bound, in_low (0.0f), in_high = in_bound;
     const B k (k_), enough (k_ + static_cast<float> (LARGEST - 1)), wanted (k_ + 0.5f * static_cast<float> (LARGEST));
     for (int step = 0; step < STEPS && xsimd::any (in_high > enough); ++step)
     {
-      const B count = countWithin (middle);
+      const B share = step <= EVEN ? (wanted - in_low) / xsimd::max (in_high - in_low, B (1.0f)) : B (0.5f);
+      const B between = xsimd::fma (xsimd::min (share, B (0.9f)), high - low, low);
+      const B middle = xsimd::select (in_high > enough, between, high), count = countWithin (middle);
       const auto is_enough = count >= k;
       high = xsimd::select (is_enough, middle, high);
       in_high = xsimd::select (is_enough, count, in_high);
       low = xsimd::select (is_enough, low, middle);
       in_low = xsimd::select (is_enough, in_low, count);
-      const B share = step < EVEN ? (wanted - in_low) / xsimd::max (in_high - in_low, B (1.0f)) : B (0.5f);
-      middle = xsimd::fma (xsimd::min (share, B (0.9f)), high - low, low);
-      middle = xsimd::select (in_high > enough, middle, high);
     }
     found_ = in_high;
     squared_ = largestWithin (high, in_high - k);

@@ -3,7 +3,6 @@
 
 #include "lane_vector.h"
 
-#include <algorithm>
 #include <cstddef>
 #include <cstdint>
 
@@ -32,16 +31,6 @@ public:
     }
   }
 
-  /** \brief Keeps the lanes whose bits are set. */
-  explicit Packing (unsigned lanes)
-  {
-    for (std::size_t lane = 0; lane < WIDTH; ++lane)
-    {
-      kept_[size_] = static_cast<std::uint8_t> (lane);
-      size_ += lanes >> lane & 1u;
-    }
-  }
-
   /** \brief How many are kept. */
   std::size_t
   size () const
@@ -65,16 +54,6 @@ public:
   {
     for (std::size_t i = 0; i < WIDTH; ++i)
       to[i] = static_cast<std::uint32_t> (first + kept_[i]);
-  }
-
-  /** \brief The same of numbers from an array, which may go into it again. */
-  void
-  pack (const std::uint32_t *from, std::uint32_t *to) const
-  {
-    std::uint32_t all[WIDTH];
-    std::copy_n (from, WIDTH, all);
-    for (std::size_t i = 0; i < WIDTH; ++i)
-      to[i] = all[kept_[i]];
   }
 
   /** \brief The first \a count lanes from an array; nothing beyond these is read. */
@@ -106,8 +85,6 @@ public:
   {
   }
 
-  explicit Packing (unsigned lanes) : kept_ (static_cast<__mmask16> (lanes)) {}
-
   std::size_t
   size () const
   {
@@ -127,12 +104,6 @@ public:
     const __m512i numbers = _mm512_add_epi32 (_mm512_set1_epi32 (static_cast<int> (first)),
                                               _mm512_setr_epi32 (0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15));
     _mm512_storeu_si512 (to, _mm512_maskz_compress_epi32 (kept_, numbers));
-  }
-
-  void
-  pack (const std::uint32_t *from, std::uint32_t *to) const
-  {
-    _mm512_storeu_si512 (to, _mm512_maskz_compress_epi32 (kept_, _mm512_loadu_si512 (from)));
   }
 
   static B
@@ -180,12 +151,6 @@ public:
   {
   }
 
-  explicit Packing (unsigned lanes)
-      : size_ (static_cast<std::size_t> (__builtin_popcount (lanes))),
-        order_ (_mm256_cvtepu8_epi32 (_mm_cvtsi64_si128 (static_cast<long long> (PACKED.lanes[lanes]))))
-  {
-  }
-
   std::size_t
   size () const
   {
@@ -205,13 +170,6 @@ public:
     _mm256_storeu_si256 (reinterpret_cast<__m256i *> (to), numbers);
   }
 
-  void
-  pack (const std::uint32_t *from, std::uint32_t *to) const
-  {
-    const __m256i all = _mm256_loadu_si256 (reinterpret_cast<const __m256i *> (from));
-    _mm256_storeu_si256 (reinterpret_cast<__m256i *> (to), _mm256_permutevar8x32_epi32 (all, order_));
-  }
-
   static B
   load (const float *from, std::size_t count)
   {
@@ -222,6 +180,13 @@ public:
   }
 
 private:
+  /** \param[in] lanes bits of those that are kept */
+  explicit Packing (unsigned lanes)
+      : size_ (static_cast<std::size_t> (__builtin_popcount (lanes))),
+        order_ (_mm256_cvtepu8_epi32 (_mm_cvtsi64_si128 (static_cast<long long> (PACKED.lanes[lanes]))))
+  {
+  }
+
   static constexpr PackedLanes PACKED{};
 
   std::size_t size_;

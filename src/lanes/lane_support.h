@@ -187,19 +187,22 @@ private:
     list_.template take<COLUMNS> (middle, reach, value_points);
   }
 
-  /** \brief The squared distances of the listed nodes, a row for each. */
+  /** \brief The squared distances of the listed nodes, a row for each; those beyond a bound in all lanes drop out. */
   void
-  measureDistances ()
+  measureDistances (B bound)
   {
     // The compiler cannot know that the rows do not lie where these are.
     float *const rows = rows_;
     const float *const near[] = {list_.near (0), list_.near (1), list_.near (2)};
     const B x[] = {x_[0], x_[1], x_[2]};
-    for (std::size_t i = 0, count = size (); i < count; ++i)
-    {
-      const B d[] = {B (near[0][i]) - x[0], B (near[1][i]) - x[1], B (near[2][i]) - x[2]};
-      squaredLength (d).store_unaligned (rows + WIDTH * i);
-    }
+    list_.keep (
+        [&] (std::size_t i, std::size_t kept)
+        {
+          const B d[] = {B (near[0][i]) - x[0], B (near[1][i]) - x[1], B (near[2][i]) - x[2]};
+          const B squared = squaredLength (d);
+          squared.store_unaligned (rows + WIDTH * kept);
+          return xsimd::any (squared <= bound);
+        });
   }
 
   /** \brief A ball that holds those around the points with the bounds as radii. */
@@ -237,21 +240,20 @@ private:
     lists_all_ = nodes_->on_surface == nodes_->count;
     const B limit = radius_, k (k_);
     const bool is_first = !(largest_ > 0.0f);
-    if (is_first)
-      expected_ = guess * guess;
     radius_ = xsimd::min (limit, is_first ? guess * B (MORE_THAN_GUESS) : B (MORE * largest_));
     for (;;)
     {
-      lists_all_ ? listWithin<Scratch::COLUMNS> (this, 1, nodes_->count) : listWithin<3> (this, 1, nodes_->on_surface);
-      measureDistances ();
+      const B bound = radius_ * radius_ * B (1.0f + ROUNDING);
+      listWithin<3> (this, 1, nodes_->on_surface);
+      measureDistances (bound);
       LaneNearest<B> nearest (rows_, size (), k_);
-      const B bound = radius_ * radius_ * B (1.0f + ROUNDING), in_bound = nearest.countWithin (bound);
+      const B in_bound = nearest.countWithin (bound);
       if (xsimd::any (in_bound < k && radius_ < limit))
       {
         radius_ = limit;
         continue;
       }
-      nearest.find (bound, in_bound, expected_);
+      nearest.find (bound, in_bound);
       take (nearest, limit);
       return;
     }
@@ -270,14 +272,10 @@ private:
       kth_ = xsimd::select (has_fewer, limit * limit, kth_);
     }
     radius_ = xsimd::sqrt (kth_);
-    float squares[WIDTH], sum = 0.0f, largest = 0.0f;
+    float squares[WIDTH], largest = 0.0f;
     kth_.store_unaligned (squares);
     for (const float square : squares)
-    {
-      sum += square;
       largest = std::max (largest, square);
-    }
-    expected_ = B (sum / static_cast<float> (WIDTH));
     largest_ = std::sqrt (largest);
   }
 
@@ -285,7 +283,10 @@ private:
   void
   keepSupporting ()
   {
-    list_.keep ([this] (std::size_t i) { return xsimd::any (B::load_unaligned (rows_ + WIDTH * i) <= kth_); });
+    const float *const rows = rows_;
+    const B kth = kth_;
+    list_.keep ([&] (std::size_t i, std::size_t) { return xsimd::any (B::load_unaligned (rows + WIDTH * i) <= kth); });
+    list_.fetch ();
   }
 
   const Nodes *nodes_;
@@ -297,9 +298,8 @@ private:
   B radius_, inverse_, kth_;
   B at_limit_;             // 1 where ε is Points::radius
   B short_;                // 1 where it is beyond
-  bool lists_all_ = false; // the list was made for the k-th node, and holds those in the support
-  B expected_ = B (0.0f);  // ε² of the points before, in the mean
-  float largest_ = 0.0f;   // ε of them at most
+  bool lists_all_ = false; // the list that was made for the k-th node holds those in the support
+  float largest_ = 0.0f;   // ε of the points before, at most
 };
 
 } // namespace erkpa::lanes
