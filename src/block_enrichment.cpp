@@ -41,8 +41,7 @@ bool
 BlockEnrichment::canEvaluateAt (const Eigen::Vector3d &x, double reach) const
 {
   return can_evaluate_ && std::all_of (near_.begin (), near_.end (),
-                                       [&] (int near)
-                                       {
+                                       [&] (int near) {
                                          return surface (near).hasKnownPresence () ||
                                                 !surface (near).canPass (x + field_.points ().origin, reach);
                                        });
@@ -188,8 +187,8 @@ BlockEnrichment::evaluateFrom (const std::vector<Eigen::Vector3d> &seen_from, Va
 {
   values.theta_seen.clear ();
   for (const Eigen::Vector3d &place : seen_from)
-    values.theta_seen.push_back (
-        static_cast<float> (surface (values.surface).surface ().theta (place + field_.points ().origin) * inverse_unit_));
+    values.theta_seen.push_back (static_cast<float> (
+        surface (values.surface).surface ().theta (place + field_.points ().origin) * inverse_unit_));
   if (!seen_from.empty ())
     values.theta_seen.resize (seen_from.size () + lanes::MAX_WIDTH, values.theta_seen.back ());
 }

@@ -55,10 +55,9 @@ public:
   canEvaluate (const ImplicitField &field)
   {
     const BlockEnrichment all (field, 1.0);
-    return all.surfaces_.empty () ||
-           (all.can_evaluate_ &&
-            std::all_of (all.surfaces_.begin (), all.surfaces_.end (),
-                         [] (const EnrichingSurface &surface) { return surface.hasKnownPresence (); }));
+    return all.surfaces_.empty () || (all.can_evaluate_ && std::all_of (all.surfaces_.begin (), all.surfaces_.end (),
+                                                                        [] (const EnrichingSurface &surface)
+                                                                        { return surface.hasKnownPresence (); }));
   }
 
   /** \brief Evaluate at points that are near the surfaces.

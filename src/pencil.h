@@ -21,8 +21,8 @@ struct Pencil
 };
 
 /** \brief The pencils among planes: triples that share a line to within \a tolerance (a length). Planes seen through
- * the same warp share the warped line. Limited ones must touch, for a corner lies in the extents of all its edges. Of more
- * than three planes without extents through one line so many triples as say all that they have to say. */
+ * the same warp share the warped line. Limited ones must touch, for a corner lies in the extents of all its edges. Of
+ * more than three planes without extents through one line so many triples as say all that they have to say. */
 std::vector<Pencil>
 findPencils (const std::vector<SharpSurface::ConstPtr> &surfaces, double tolerance);
 
