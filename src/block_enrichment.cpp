@@ -72,12 +72,9 @@ BlockEnrichment::run (const lanes::Engine &engine, const lanes::Settings &settin
       break;
     if (values_.size () == used_)
       values_.emplace_back ();
-    Values &values = values_[used_];
+    Values &values = values_[used_++];
     values.surface = near;
     evaluateAtNodes (nodes, values);
-    if (!hasBothSides (values))
-      continue;
-    ++used_;
     evaluateAtPoints (places, values);
     evaluateFrom (seen_from, values);
     measureExtentAtPoints (places, values);
@@ -88,15 +85,6 @@ BlockEnrichment::run (const lanes::Engine &engine, const lanes::Settings &settin
   points.run (engine, settings, view, is_function, &sharp);
   if (!has_all)
     points.leaveOpen ();
-}
-
-bool
-BlockEnrichment::hasBothSides (const Values &values)
-{
-  const auto is_below = [] (float theta) { return theta < 0.0f; };
-  const auto is_above = [] (float theta) { return theta > 0.0f; };
-  return std::any_of (values.theta.begin (), values.theta.end (), is_below) &&
-         std::any_of (values.theta.begin (), values.theta.end (), is_above);
 }
 
 void

@@ -103,10 +103,6 @@ private:
   bool
   passes (int surface, const std::vector<Eigen::Vector3d> &places, double reach) const;
 
-  /** \brief Whether nodes were found on either side of a surface. */
-  static bool
-  hasBothSides (const Values &values);
-
   void
   evaluateAtNodes (const BlockNodes &nodes, Values &values);
 

@@ -28,6 +28,8 @@ bool
 isInReach (const LocalField &local, const PolygonizerOptions &options, double voxel_size)
 {
   const Support &support = local.support ();
+  if (support.radius () > support.farthest ())
+    return false;
   const double offset = std::abs (options.iso_level);
   const bool is_beyond =
       FaceVote::isBeyondBorder (support.nearestDistance () - offset, support.radius (), local.aside ());

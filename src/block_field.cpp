@@ -37,7 +37,8 @@ BlockField::canEvaluate (const ImplicitField &field)
 }
 
 BlockField::BlockField (const ImplicitField &field, const lanes::Engine &engine, const MomentLattice *lattice)
-    : field_ (field), can_evaluate_ (canEvaluate (field)), engine_ (engine), unit_ (field.supportSize ().typical ()),
+    : field_ (field), can_evaluate_ (canEvaluate (field)), engine_ (engine),
+      farthest_ (field.supportSize ().farthest ()), unit_ (field.supportSize ().typical ()),
       inverse_unit_ (1.0 / unit_), settings_ (laneSettingsOf (field)), nodes_ (field, engine, unit_),
       faces_ (field, engine, settings_, unit_), enrichment_ (field, unit_),
       plain_ (static_cast<std::size_t> (field.points ().channels), termsOf (settings_.basis),

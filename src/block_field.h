@@ -88,10 +88,11 @@ public:
     return unit_ * static_cast<double> (at (point).values[placeOf (point)]);
   }
 
+  /** \brief Whether a surface may be there: see setReach () and SupportSize::farthest (). */
   bool
   isInReach (std::size_t point) const
   {
-    return at (point).in_reach[placeOf (point)] != 0;
+    return at (point).in_reach[placeOf (point)] != 0 && radius (point) <= farthest_;
   }
 
   /** \brief Whether value (but see setLevel ()) and gradient are as LocalField's; false also where f is undefined. */
@@ -291,6 +292,7 @@ private:
   const ImplicitField &field_;
   bool can_evaluate_;
   const lanes::Engine &engine_;
+  double farthest_;            // see SupportSize
   double unit_, inverse_unit_; // of the lanes' lengths
   lanes::Settings settings_;
   BlockNodes nodes_;

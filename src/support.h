@@ -112,6 +112,13 @@ public:
     return radius_;
   }
 
+  /** \brief See SupportSize. */
+  double
+  farthest () const
+  {
+    return size_.farthest ();
+  }
+
   /** \brief Squared distance of a gathered value point from the point last selected for. */
   double
   squaredDistance (std::size_t slot) const
@@ -236,6 +243,7 @@ private:
   std::vector<double> px_, py_, pz_; // positions of the value points
   std::vector<double> squared_;      // squared distances from x
   mutable std::vector<double> scratch_;
+  mutable std::vector<int> listed_; // does not shrink: what grows again is cleared
   std::vector<float> found_;
   std::vector<int> slots_; // of those that are weighed
   std::vector<SupportNode> nodes_;
@@ -252,28 +260,25 @@ template <typename ChooseT>
 void
 Support::listSlots (ChooseT choose, std::vector<int> &slots) const
 {
-  slots.resize (squared_.size ());
+  if (listed_.size () < squared_.size ())
+    listed_.resize (squared_.size ());
   std::size_t kept = 0;
   for (std::size_t i = 0; i < squared_.size (); ++i)
   {
-    slots[kept] = static_cast<int> (i);
+    listed_[kept] = static_cast<int> (i);
     kept += choose (i) ? 1 : 0; // no branch, which none could foretell
   }
-  slots.resize (kept);
+  slots.assign (listed_.begin (), listed_.begin () + static_cast<std::ptrdiff_t> (kept));
 }
 
 template <typename ChooseT>
 void
 Support::listDistances (ChooseT choose)
 {
-  scratch_.resize (squared_.size ());
-  std::size_t kept = 0;
-  for (std::size_t i = 0; i < squared_.size (); ++i)
-  {
-    scratch_[kept] = squared_[i];
-    kept += both (choose (i), isOnSurface (i)) ? 1 : 0;
-  }
-  scratch_.resize (kept);
+  listSlots ([&] (std::size_t i) { return both (choose (i), isOnSurface (i)); }, slots_);
+  scratch_.clear ();
+  for (const int slot : slots_)
+    scratch_.push_back (squared_[static_cast<std::size_t> (slot)]);
 }
 
 } // namespace erkpa

@@ -3,6 +3,7 @@
 
 #include <erkpa/implicit_field.h>
 
+#include <cmath>
 #include <vector>
 
 namespace erkpa
@@ -56,6 +57,18 @@ public:
   typical () const
   {
     return typical_;
+  }
+
+  /** \brief Where radii are larger there is no surface, though f is defined: infinite but for NEAREST.
+   *
+   * Nodes that are so sparse beside most of them are strays, whose supports hold each other and reach through all of
+   * space.
+   */
+  double
+  farthest () const
+  {
+    constexpr double SPARSE = 16.0;
+    return kind_ == Kind::NEAREST && typical_ > 0.0 ? SPARSE * typical_ : HUGE_VAL;
   }
 
   /** \brief The radius at every node. */

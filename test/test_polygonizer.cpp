@@ -265,6 +265,44 @@ TEST (Polygonizer, KeepsSeparateObjectsAndDropsStrayPoints)
   EXPECT_NEAR (shapes::volume (mesh), 2.0 * 4.0 / 3.0 * M_PI, 0.1);
 }
 
+/** \brief So many that the nearest ones of each are strays as well: they must not hold each other up in empty space. */
+TEST (Polygonizer, LosesNoTimeAtManyStrayPointsAllAround)
+{
+  shapes::Samples samples = shapes::sphere (3000);
+  erkpa::PolygonizerReport without, with;
+  const TriangleMesh clean = meshOf (*shapes::field (samples), {}, &without);
+  for (int i = 0; i < 30; ++i)
+  {
+    const Vector3d away (std::sin (1.7 * i), std::cos (2.3 * i), std::sin (0.9 * i + 1.0));
+    samples.add ((2.5 + 0.25 * i) * away, Vector3d::UnitX ());
+  }
+  const TriangleMesh mesh = meshOf (*shapes::field (samples), {}, &with);
+  EXPECT_LT (with.evaluations, without.evaluations + without.evaluations / 5);
+  EXPECT_MESH_CONTRACT (mesh, true);
+  EXPECT_EQ (erkpa::measureTopology (mesh).components, 1u);
+  EXPECT_NEAR (shapes::volume (mesh), shapes::volume (clean), 1e-3);
+}
+
+/** \brief Where supports are as large as that, it ends, though the field goes on. */
+TEST (Polygonizer, FollowsTheSurfaceIntoSparsePointsButNotIntoNearlyNone)
+{
+  shapes::Samples samples = shapes::sheet (60, [] (double, double) { return 0.0; }); // of -1 to 1
+  const auto add_row_of = [&] (double start, double spacing)
+  {
+    for (int i = 0; i < 8; ++i)
+      for (int j = 0; j < 8; ++j)
+        samples.add ({start + spacing * i, spacing * (j - 4), 0.0}, Vector3d::UnitZ ());
+  };
+  add_row_of (1.2, 0.2); // spacing of the sheet: 0.034
+  add_row_of (10.0, 3.0);
+  const TriangleMesh mesh = meshOf (*shapes::field (samples));
+  float farthest = 0.0f;
+  for (const Eigen::Vector3f &v : mesh.vertices)
+    farthest = std::max (farthest, v.x ());
+  EXPECT_GT (farthest, 2.5f);
+  EXPECT_LT (farthest, 3.5f);
+}
+
 TEST (Polygonizer, GivesTheSameMeshInAnyNumberOfThreads)
 {
   const auto field = shapes::field (shapes::torus (4000, 1.0, 0.4));

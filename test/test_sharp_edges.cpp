@@ -494,6 +494,9 @@ TEST (SharpEdges, ThatAreGivenAreTheSameForAnyNumberOfThreads)
     stage.setInputCloud (shapes::cloud<pcl::PointNormal> (samples));
     for (const Eigen::Vector4d &b : shapes::boxBisectors (HALF))
       stage.addSharpEdge (coefficients ({float (b[0]), float (b[1]), float (b[2]), float (b[3])}));
+    stage.addSharpSurface (erkpa::makeSharpFunction (
+        [] (const Vector3d &x) { return x[0] - 0.2 * std::sin (2.0 * x[1]); },
+        [] (const Vector3d &x) { return Vector3d (1.0, -0.4 * std::cos (2.0 * x[1]), 0.0); }));
     stage.setNumberOfThreads (threads);
     return meshOf (stage).mesh;
   };

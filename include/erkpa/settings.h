@@ -238,7 +238,8 @@ public:
     return options_.polygonizer.resolution;
   }
 
-  /** \brief The surface is f = iso_level; in the cloud's unit of length (before a warp), positive outside. */
+  /** \brief The surface is f = iso_level; in the cloud's unit of length (before a warp), positive outside. Supports
+   * of k nearest points know f some 16 support radii far. */
   void
   setIsoLevel (double iso_level)
   {

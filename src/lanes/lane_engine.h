@@ -191,7 +191,7 @@ evaluateEnriched (const Settings &settings, const Nodes &nodes, const Points &po
       [] (const LaneSupport<B> *, std::size_t) {},
       [&] (std::size_t, const LaneSupport<B> &support, std::size_t first)
       {
-        const LaneSurfaces<B> near (sharp, first, support.radius ());
+        const LaneSurfaces<B> near (sharp, first, support);
         if (!near.has_all)
         {
           engine.leaveOpen (first);

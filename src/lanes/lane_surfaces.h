@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "lanes.h"
+#include "lane_support.h"
 
 #include <xsimd/xsimd.hpp>
 
@@ -38,15 +38,15 @@ struct LaneSurfaces
   Corner corners[MAX_CORNERS];
 
   /** \param[in] first place of the evaluation point in the first lane
-   * \param[in] radius ε
+   * \param[in] support of the points
    */
-  LaneSurfaces (const SharpSurfaces &sharp, std::size_t first, B radius)
+  LaneSurfaces (const SharpSurfaces &sharp, std::size_t first, const LaneSupport<B> &support)
   {
     int place[SharpSurfaces::MOST]; // of a surface among those kept
     for (std::size_t s = 0; s < sharp.count; ++s)
     {
       place[s] = -1;
-      if (!passesSupport (sharp.surfaces[s], first, radius))
+      if (!passesSupport (sharp.surfaces[s], first, support))
         continue;
       has_all = count < static_cast<int> (MAX_SURFACES);
       if (!has_all)
@@ -107,16 +107,33 @@ struct LaneSurfaces
 private:
   /** \brief θ of a plane is a distance. One that is limited is gone at a distance. */
   static bool
-  passesSupport (const Surface &surface, std::size_t first, B radius)
+  passesSupport (const Surface &surface, std::size_t first, const LaneSupport<B> &support)
   {
+    const B radius = support.radius ();
     if (surface.distance_at != nullptr)
     {
       const B gone = surface.fade > 0.0f ? B (surface.fade) : radius;
       if (!xsimd::any (B::load_unaligned (surface.distance_at + first) < gone))
         return false;
     }
+    if (!surface.is_plane)
+      return hasBothSides (surface, support);
     const B theta = B::load_unaligned (surface.theta_at + first);
-    return !surface.is_plane || xsimd::any (xsimd::abs (theta) <= B (1.00001f) * radius);
+    return xsimd::any (xsimd::abs (theta) <= B (1.00001f) * radius);
+  }
+
+  /** \brief Whether nodes to visit lie on either side. */
+  static bool
+  hasBothSides (const Surface &surface, const LaneSupport<B> &support)
+  {
+    bool is_below = false, is_above = false;
+    for (std::size_t i = 0; i < support.size () && !(is_below && is_above); ++i)
+    {
+      const float theta = surface.theta[support.node (i)];
+      is_below = is_below || theta < 0.0f;
+      is_above = is_above || theta > 0.0f;
+    }
+    return is_below && is_above;
   }
 };
 
