@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <erkpa/reconstruction.h>
 
+#include "normal_flips.h"
 #include "stage_clock.h"
 #include "support.h"
 #include "support_size.h"
@@ -125,11 +126,14 @@ respectSharpEdges (const PointLayout &layout, Options &options, OrientedPoints &
   std::vector<SharpSurface::ConstPtr> &surfaces = options.field.sharp_surfaces;
   const SharpOptions &sharp = options.sharp;
   const int threads = options.polygonizer.threads;
-  const std::vector<Eigen::Vector3f> given = points.normals;
+  std::vector<Eigen::Vector3f> given; // but for those that are turned
   if (options.normals.sharpen)
   {
     const StageClock clock (report.seconds_normals);
+    const std::size_t turned = turnFlippedNormals (*layout.search, threads, points);
+    given = points.normals;
     report.normals = refineNormals (layout, report.points.without_normal > 0, threads, points);
+    report.normals.turned = turned;
   }
   const StageClock clock (report.seconds_sharp);
   std::vector<SharpSurface::ConstPtr> found, between;

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "noise.h"
+#include "normal_flips.h"
 #include "normal_sharpening.h"
 #include "normal_smoothing.h"
 #include "shapes.h"
@@ -163,6 +164,25 @@ TEST (NormalSharpening, TellsSmearedNormalsFromExactAndFromRandomOnes)
   shake (shaken, 10.0);
   EXPECT_FALSE (areSmeared (box, shaken));
   EXPECT_FALSE (areSmeared (sphere, sphere.points)); // no edges
+}
+
+TEST (NormalFlips, AreTurnedAtSinglePointsAndNotOnTheOtherSideOfAThinWall)
+{
+  const shapes::Samples box = shapes::box (6000, {1.0, 0.7, 0.5});
+  OrientedPoints points = *shapes::points (box);
+  const auto turn = [] (OrientedPoints &of)
+  { return erkpa::turnFlippedNormals (*erkpa::makeKdTreeSearch (of.positions), 0, of); };
+  EXPECT_EQ (turn (points), 0u);
+  std::size_t flipped = 0;
+  for (std::size_t i = 0; i < points.size (); i += 29, ++flipped)
+    points.normals[i] *= -1.0f;
+  EXPECT_GE (turn (points), flipped - flipped / 20) << "some at edges are let be";
+  std::size_t wrong = 0;
+  for (std::size_t i = 0; i < points.size (); ++i)
+    wrong += points.normals[i].cast<double> ().dot (box.normals[i]) < 0.0 ? 1 : 0;
+  EXPECT_LT (wrong, flipped / 20);
+  OrientedPoints plate = *shapes::points (shapes::box (6000, {1.0, 1.0, 0.005})); // a third of the spacing thick
+  EXPECT_EQ (turn (plate), 0u);
 }
 
 TEST (NormalSmoothing, TakesRandomErrorsOffAndKnowsTheirSize)

@@ -510,6 +510,21 @@ TEST (SharpEdges, ThatAreGivenAreTheSameForAnyNumberOfThreads)
   }
 }
 
+TEST (SharpEdges, AreFoundWhereNormalsOfSinglePointsAreFlipped)
+{
+  shapes::Samples samples = shapes::box (6000, HALF);
+  for (std::size_t i = 0; i < samples.size (); i += 23)
+    samples.normals[i] *= -1.0;
+  Stage stage;
+  stage.setInputCloud (shapes::cloud<pcl::PointNormal> (samples));
+  stage.setAutomaticSharpEdges (true);
+  const erkpa::TriangleMesh mesh = meshOf (stage).mesh;
+  EXPECT_MESH_CONTRACT (mesh, true);
+  EXPECT_EQ (stage.getReport ().topology.euler, 2);
+  EXPECT_EQ (stage.getCorners ().size (), 8u);
+  EXPECT_GT (stage.getReport ().normals.turned, samples.size () / 25);
+}
+
 TEST (SharpEdges, HaveTheNormalsOfEachSideWhereTheyAreSplit)
 {
   const TurnedBox box (12000);

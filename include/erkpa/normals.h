@@ -4,6 +4,8 @@
 #include <erkpa/oriented_points.h>
 #include <erkpa/point_layout.h>
 
+#include <cstddef>
+
 namespace erkpa
 {
 
@@ -36,6 +38,7 @@ estimateNormals (OrientedPoints &points, const PointLayout &layout, const Normal
 /** \brief What refineNormals () did. */
 struct RefinedNormals
 {
+  std::size_t turned = 0; ///< of single points that looked the other way than all around them
   bool sharpened = false; ///< normals smeared across edges became those of one face each
   bool smoothed =
       false; ///< noise was taken out of the normals, with which faces are told apart; the field keeps those given

@@ -158,8 +158,8 @@ public:
     return options_.sharp.angle;
   }
 
-  /** \brief Where sharp edges are known or sought: make normals those of one face each, see refineNormals (); true by
-   * default. */
+  /** \brief Where sharp edges are known or sought: turn normals of single points that look the other way than all
+   * around them, and make normals those of one face each, see refineNormals (); true by default. */
   void
   setSharpenNormals (bool sharpen)
   {

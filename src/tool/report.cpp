@@ -42,6 +42,7 @@ sharpEdgesToJson (const CommandLine &line, const Report &report, double crease_l
 {
   return {{"given", line.options.field.sharp_surfaces.size ()},
           {"found", report.sharp_surfaces.size ()},
+          {"normals_turned", report.normals.turned},
           {"normals_sharpened", report.normals.sharpened},
           {"normals_smoothed", report.normals.smoothed},
           {"creases", report.creases.size ()},
