@@ -48,9 +48,9 @@ BlockEnrichment::canEvaluateAt (const Eigen::Vector3d &x, double reach) const
 }
 
 bool
-BlockEnrichment::passes (int surface, const std::vector<Eigen::Vector3d> &places, double reach) const
+BlockEnrichment::passes (int s, const std::vector<Eigen::Vector3d> &places, double reach) const
 {
-  const EnrichingSurface &known = surfaces_[static_cast<std::size_t> (surface)];
+  const EnrichingSurface &known = surface (s);
   return known.hasKnownPresence () &&
          std::any_of (places.begin (), places.end (),
                       [&] (const Eigen::Vector3d &x) { return known.canPass (x + field_.points ().origin, reach); });
@@ -61,30 +61,37 @@ BlockEnrichment::run (const lanes::Engine &engine, const lanes::Settings &settin
                       const BlockNodes &nodes, const std::vector<Eigen::Vector3d> &places,
                       const std::vector<Eigen::Vector3d> &seen_from, double reach, BlockPoints &points)
 {
+  choose (places, reach);
+  lanes::SharpSurfaces sharp{};
+  if (used_ > lanes::SharpSurfaces::MOST || !listPencils (sharp))
+  {
+    points.leaveOpen ();
+    return;
+  }
+  for (std::size_t s = 0; s < used_; ++s)
+  {
+    evaluateAtNodes (nodes, values_[s]);
+    evaluateAtPoints (places, values_[s]);
+    evaluateFrom (seen_from, values_[s]);
+    measureExtentAtPoints (places, values_[s]);
+  }
+  showSurfaces (sharp);
+  const bool is_function = field_.supportSize ().kind () == SupportSize::Kind::FUNCTION;
+  points.run (engine, settings, view, is_function, &sharp);
+}
+
+void
+BlockEnrichment::choose (const std::vector<Eigen::Vector3d> &places, double reach)
+{
   used_ = 0;
-  bool has_all = true;
   for (const int near : near_)
   {
     if (!passes (near, places, reach))
       continue;
-    has_all = used_ < lanes::SharpSurfaces::MOST;
-    if (!has_all)
-      break;
     if (values_.size () == used_)
       values_.emplace_back ();
-    Values &values = values_[used_++];
-    values.surface = near;
-    evaluateAtNodes (nodes, values);
-    evaluateAtPoints (places, values);
-    evaluateFrom (seen_from, values);
-    measureExtentAtPoints (places, values);
+    values_[used_++].surface = near;
   }
-  lanes::SharpSurfaces sharp = viewOfSurfaces ();
-  has_all = listPencils (sharp) && has_all;
-  const bool is_function = field_.supportSize ().kind () == SupportSize::Kind::FUNCTION;
-  points.run (engine, settings, view, is_function, &sharp);
-  if (!has_all)
-    points.leaveOpen ();
 }
 
 void
@@ -122,15 +129,15 @@ BlockEnrichment::thetaAtNode (const EnrichingSurface &known, const BlockNodes &n
 
 /** \brief The same of a surface that is not quick: blocks that follow each other share most of their nodes. */
 Eigen::Vector4f
-BlockEnrichment::recall (int surface, const BlockNodes &nodes, std::size_t i)
+BlockEnrichment::recall (int s, const BlockNodes &nodes, std::size_t i)
 {
-  constexpr std::size_t PLACES = 1u << 14; // some blocks' nodes
-  std::vector<Recalled> &all = recalled_[static_cast<std::size_t> (surface)];
+  constexpr std::size_t PLACES = 1u << 12; // some blocks' nodes
+  std::vector<Recalled> &all = recalled_[static_cast<std::size_t> (s)];
   all.resize (PLACES);
   const auto node = static_cast<std::uint32_t> (nodes.node (i));
   Recalled &recalled = all[node % PLACES];
   if (recalled.node != node)
-    recalled = {node, thetaAtNode (this->surface (surface), nodes, i)};
+    recalled = {node, thetaAtNode (surface (s), nodes, i)};
   return recalled.theta;
 }
 
@@ -201,10 +208,9 @@ BlockEnrichment::measureExtentAtPoints (const std::vector<Eigen::Vector3d> &plac
   }
 }
 
-lanes::SharpSurfaces
-BlockEnrichment::viewOfSurfaces () const
+void
+BlockEnrichment::showSurfaces (lanes::SharpSurfaces &sharp) const
 {
-  lanes::SharpSurfaces sharp{};
   sharp.count = used_;
   sharp.jumps = field_.options ().enrichment == EnrichmentType::JUMP;
   for (std::size_t s = 0; s < used_; ++s)
@@ -224,7 +230,6 @@ BlockEnrichment::viewOfSurfaces () const
     seen.fade = static_cast<float> (surface (values.surface).fade () * inverse_unit_);
     seen.is_plane = surface (values.surface).isPlane ();
   }
-  return sharp;
 }
 
 /** \brief False where there are too many. */

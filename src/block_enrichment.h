@@ -101,7 +101,7 @@ private:
 
   /** \brief Whether some support of this reach around the points may hold nodes on either side. */
   bool
-  passes (int surface, const std::vector<Eigen::Vector3d> &places, double reach) const;
+  passes (int s, const std::vector<Eigen::Vector3d> &places, double reach) const;
 
   void
   evaluateAtNodes (const BlockNodes &nodes, Values &values);
@@ -110,7 +110,7 @@ private:
   thetaAtNode (const EnrichingSurface &known, const BlockNodes &nodes, std::size_t i) const;
 
   Eigen::Vector4f
-  recall (int surface, const BlockNodes &nodes, std::size_t i);
+  recall (int s, const BlockNodes &nodes, std::size_t i);
 
   void
   evaluatePlaneAtNodes (const SharpPlane &plane, const BlockNodes &nodes, Values &values) const;
@@ -124,8 +124,12 @@ private:
   void
   measureExtentAtPoints (const std::vector<Eigen::Vector3d> &places, Values &values) const;
 
-  lanes::SharpSurfaces
-  viewOfSurfaces () const;
+  /** \brief List the surfaces that pass the points. */
+  void
+  choose (const std::vector<Eigen::Vector3d> &places, double reach);
+
+  void
+  showSurfaces (lanes::SharpSurfaces &sharp) const;
 
   bool
   listPencils (lanes::SharpSurfaces &sharp) const;

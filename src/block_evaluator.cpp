@@ -20,7 +20,8 @@ GridField::GridField (const ImplicitField &field, const PolygonizerOptions &opti
   local.thicken (local.unwarpedLength (LEAST_WALL * voxel_size));
   block.thicken (LEAST_WALL * voxel_size);
   const double offset = std::abs (options.iso_level);
-  block.setReach (options.reach, offset, std::sqrt (3.0) * voxel_size + offset);
+  block.setReach (options.reach, offset, std::sqrt (3.0) * voxel_size + offset,
+                  field.supportSize ().farthest (voxel_size));
   block.setLevel (options.iso_level);
 }
 
@@ -28,7 +29,7 @@ bool
 isInReach (const LocalField &local, const PolygonizerOptions &options, double voxel_size)
 {
   const Support &support = local.support ();
-  if (support.radius () > support.farthest ())
+  if (support.radius () > support.farthest (local.unwarpedLength (voxel_size)))
     return false;
   const double offset = std::abs (options.iso_level);
   const bool is_beyond =

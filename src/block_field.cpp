@@ -37,8 +37,7 @@ BlockField::canEvaluate (const ImplicitField &field)
 }
 
 BlockField::BlockField (const ImplicitField &field, const lanes::Engine &engine, const MomentLattice *lattice)
-    : field_ (field), can_evaluate_ (canEvaluate (field)), engine_ (engine),
-      farthest_ (field.supportSize ().farthest ()), unit_ (field.supportSize ().typical ()),
+    : field_ (field), can_evaluate_ (canEvaluate (field)), engine_ (engine), unit_ (field.supportSize ().typical ()),
       inverse_unit_ (1.0 / unit_), settings_ (laneSettingsOf (field)), nodes_ (field, engine, unit_),
       faces_ (field, engine, settings_, unit_), enrichment_ (field, unit_),
       plain_ (static_cast<std::size_t> (field.points ().channels), termsOf (settings_.basis),
@@ -52,8 +51,9 @@ BlockField::BlockField (const ImplicitField &field, const lanes::Engine &engine,
 }
 
 void
-BlockField::setReach (double share, double offset, double near_enough)
+BlockField::setReach (double share, double offset, double near_enough, double farthest)
 {
+  farthest_ = farthest;
   settings_.reach = static_cast<float> (share);
   settings_.offset = static_cast<float> (offset * inverse_unit_);
   settings_.near_enough = static_cast<float> (near_enough * inverse_unit_);

@@ -11,6 +11,7 @@
 
 #include <erkpa/implicit_field.h>
 
+#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <vector>
@@ -35,9 +36,9 @@ public:
   static bool
   canEvaluate (const ImplicitField &field);
 
-  /** \brief Decide what in-reach means: see lanes::Settings. */
+  /** \brief Decide what in-reach means: see lanes::Settings, and SupportSize::farthest (). */
   void
-  setReach (double share, double offset, double near_enough);
+  setReach (double share, double offset, double near_enough, double farthest = HUGE_VAL);
 
   /** \brief See LocalField::thicken (). */
   void
@@ -88,7 +89,7 @@ public:
     return unit_ * static_cast<double> (at (point).values[placeOf (point)]);
   }
 
-  /** \brief Whether a surface may be there: see setReach () and SupportSize::farthest (). */
+  /** \brief Whether a surface may be there: see setReach (). */
   bool
   isInReach (std::size_t point) const
   {
@@ -292,7 +293,7 @@ private:
   const ImplicitField &field_;
   bool can_evaluate_;
   const lanes::Engine &engine_;
-  double farthest_;            // see SupportSize
+  double farthest_ = 0.0;      // supports with a surface in them
   double unit_, inverse_unit_; // of the lanes' lengths
   lanes::Settings settings_;
   BlockNodes nodes_;

@@ -87,6 +87,8 @@ public:
   leaveOpen ()
   {
     std::fill_n (states.begin (), count_, lanes::State::UNSETTLED);
+    std::fill_n (supports.begin (), count_, 0u);
+    std::fill_n (active.begin (), count_, 0u);
   }
 
   // What was found; see lanes::Samples. Points of faces have theirs written here afterwards.

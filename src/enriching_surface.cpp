@@ -59,11 +59,14 @@ EnrichingSurface::look (const SharpSurface &surface)
     case Kind::REVERSED:
       break;
     case Kind::WARPED:
-      has_known_presence_ = has_known_presence_ && warp_ == nullptr;
-      warp_ = extent_ == nullptr ? parts.warp.get () : warp_; // one that is inside an extent does not move it
+      if (extent_ == nullptr) // one that is inside an extent does not move it
+      {
+        warp_ = parts.warp.get ();
+        ++warps_;
+      }
       break;
     case Kind::LIMITED:
-      has_known_presence_ = has_known_presence_ && extent_ == nullptr;
+      has_known_presence_ = has_known_presence_ && extent_ == nullptr && warps_ <= 1;
       extent_ = parts.extent.get ();
       fade_ = parts.fade;
       break;

@@ -4,6 +4,8 @@
 #include <erkpa/extent.h>
 #include <erkpa/sharp_surface.h>
 
+#include <cmath>
+
 namespace erkpa
 {
 
@@ -48,7 +50,8 @@ public:
     return steepness_ > 0.0;
   }
 
-  /** \brief Whether one extent at most says where it is in force. Not so of several, and of classes not known. */
+  /** \brief Whether one extent at most, seen through one warp at most, says where it is in force. Not so of classes
+   * not known. */
   bool
   hasKnownPresence () const
   {
@@ -92,6 +95,7 @@ private:
   bool is_field_ = false, has_known_presence_ = true;
   double steepness_ = 0.0; // |∇θ| is nowhere larger; 0: not known, as of all but models and what is between them
   const SpaceWarp *warp_ = nullptr; // through which the extent is seen
+  int warps_ = 0;                   // around it
   const Extent *extent_ = nullptr;
   double fade_ = 0.0;
 };

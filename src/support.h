@@ -114,9 +114,9 @@ public:
 
   /** \brief See SupportSize. */
   double
-  farthest () const
+  farthest (double voxel_size) const
   {
-    return size_.farthest ();
+    return size_.farthest (voxel_size);
   }
 
   /** \brief Squared distance of a gathered value point from the point last selected for. */
@@ -245,7 +245,7 @@ private:
   mutable std::vector<double> scratch_;
   mutable std::vector<int> listed_; // does not shrink: what grows again is cleared
   std::vector<float> found_;
-  std::vector<int> slots_; // of those that are weighed
+  std::vector<int> slots_; // of those that were listed last
   std::vector<SupportNode> nodes_;
   const std::vector<int> *parts_ = nullptr; // null: all
   int part_ = 0;

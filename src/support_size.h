@@ -3,6 +3,7 @@
 
 #include <erkpa/implicit_field.h>
 
+#include <algorithm>
 #include <cmath>
 #include <vector>
 
@@ -59,16 +60,17 @@ public:
     return typical_;
   }
 
-  /** \brief Where radii are larger there is no surface, though f is defined: infinite but for NEAREST.
+  /** \brief Where radii are larger there is no surface in a grid of these voxels, though f is defined: infinite but for
+   * NEAREST.
    *
-   * Nodes that are so sparse beside most of them are strays, whose supports hold each other and reach through all of
-   * space.
+   * Nodes that are so sparse beside most of them, and beside the voxels, are strays for this grid: their supports hold
+   * each other and reach through all of space, which would be followed voxel by voxel.
    */
   double
-  farthest () const
+  farthest (double voxel_size) const
   {
-    constexpr double SPARSE = 16.0;
-    return kind_ == Kind::NEAREST && typical_ > 0.0 ? SPARSE * typical_ : HUGE_VAL;
+    constexpr double SPARSE = 16.0, VOXELS = 64.0;
+    return kind_ == Kind::NEAREST ? std::max (SPARSE * typical_, VOXELS * voxel_size) : HUGE_VAL;
   }
 
   /** \brief The radius at every node. */

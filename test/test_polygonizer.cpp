@@ -283,6 +283,20 @@ TEST (Polygonizer, LosesNoTimeAtManyStrayPointsAllAround)
   EXPECT_NEAR (shapes::volume (mesh), shapes::volume (clean), 1e-3);
 }
 
+/** \brief The grid says as well what is sparse: where points come in heaps, most supports are small. */
+TEST (Polygonizer, KeepsSurfacesOfFarSparserPointsWhereVoxelsSuitThem)
+{
+  shapes::Samples samples = shapes::sphere (12000, 0.1);
+  const shapes::Samples large = shapes::sphere (2000, 2.0);
+  for (std::size_t i = 0; i < large.size (); ++i)
+    samples.add (large.positions[i] + Vector3d (4.0, 0.0, 0.0), large.normals[i]);
+  PolygonizerOptions options;
+  options.voxel_size = 0.1;
+  const TriangleMesh mesh = meshOf (*shapes::field (samples), options);
+  EXPECT_MESH_CONTRACT (mesh, true);
+  EXPECT_NEAR (shapes::volume (mesh), 8.0 * 4.0 / 3.0 * M_PI, 0.2);
+}
+
 /** \brief Where supports are as large as that, it ends, though the field goes on. */
 TEST (Polygonizer, FollowsTheSurfaceIntoSparsePointsButNotIntoNearlyNone)
 {

@@ -239,7 +239,7 @@ public:
   }
 
   /** \brief The surface is f = iso_level; in the cloud's unit of length (before a warp), positive outside. Supports
-   * of k nearest points know f some 16 support radii far. */
+   * of k nearest points: at most 16 support radii far, or 64 voxels. */
   void
   setIsoLevel (double iso_level)
   {

@@ -4,8 +4,6 @@
 #include "lane_packing.h"
 #include "lanes.h"
 
-#include <algorithm>
-
 namespace erkpa::lanes
 {
 

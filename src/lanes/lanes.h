@@ -109,6 +109,7 @@ struct Pencil
 struct SharpSurfaces
 {
   static constexpr std::size_t MOST = 30; ///< of either
+  static_assert (MOST <= 32, "Samples::active has a bit for each");
 
   std::size_t count; ///< 0: none, and no enrichment
   bool jumps;        ///< the field jumps across them: functional values only
