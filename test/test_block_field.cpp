@@ -614,10 +614,10 @@ TEST_F (BlockFieldTest, AgreesWithTheDefinitionWhereManySharpSurfacesPass)
   expectAgreement (*field, places);
   for (int i = 5; i < 8; ++i) // one place is passed by eight of them
     options.sharp_surfaces.push_back (shapes::plane ({std::sin (0.7 * i), std::cos (0.7 * i), 0.0, 0.0}));
-  const auto crowded = shapes::field (box, options);
-  BlockField block (*crowded);
   const auto open_at = [&] (const Vector3d &middle)
   {
+    const auto crowded = shapes::field (box, options);
+    BlockField block (*crowded);
     const std::vector<Vector3d> points = evaluateAround (block, middle, crowded->spacing ());
     int open = 0;
     for (std::size_t i = 0; i < points.size (); ++i)
@@ -626,9 +626,10 @@ TEST_F (BlockFieldTest, AgreesWithTheDefinitionWhereManySharpSurfacesPass)
   };
   EXPECT_EQ (open_at ({0.0, 0.0, half[2]}), 21);
   EXPECT_EQ (open_at ({0.0, half[1], 0.1}), 0);
-  for (int i = 0; i < 15; ++i) // more than a call takes
-    options.sharp_surfaces.push_back (shapes::plane ({0.0, 0.02 * i, 1.0, -half[2]}));
-  expectAgreement (*shapes::field (box, options), {{0.0, 0.0, half[2]}, {0.1, 0.1, half[2]}}, -1.0);
+  for (int i = 0; i < 25; ++i) // more than a call takes, all along the top
+    options.sharp_surfaces.push_back (shapes::plane ({0.0, 0.002 * i, 1.0, -half[2]}));
+  EXPECT_EQ (open_at ({0.0, 0.0, half[2]}), 21);
+  EXPECT_EQ (open_at ({0.0, half[1], 0.1}), 0);
 }
 
 /** \brief Seen from elsewhere, the piece of f is meant that holds there: kinks go on as if they did not bend. */
