@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "pencil.h"
 
+#include "enriching_surface.h"
+
 #include <Eigen/LU>
 #include <Eigen/SVD>
 
@@ -56,17 +58,6 @@ boundsOf (const SharpSurface &surface, double more)
   return bounds;
 }
 
-/** \brief Whether a plane has an extent: then it may be absent where others meet in it. */
-bool
-isLimited (const SharpSurface &surface)
-{
-  for (SharpSurfaceParts parts = surface.parts (); parts.kind != SharpSurfaceParts::Kind::LIMITED;
-       parts = parts.surface->parts ())
-    if (parts.kind != SharpSurfaceParts::Kind::WARPED)
-      return false;
-  return true;
-}
-
 /** \brief The planes through one line, of which every triple is a pencil.
  *
  * Of n planes n - 2 triples say all: functions that are linear between the 2 n half-planes around a line have n - 2
@@ -114,7 +105,9 @@ findPencils (const std::vector<SharpSurface::ConstPtr> &surfaces, double toleran
   const int n = static_cast<int> (surfaces.size ());
   const auto plane = [&] (int i) { return planes[static_cast<std::size_t> (i)]; };
   const auto warp = [&] (int i) { return warps[static_cast<std::size_t> (i)]; };
-  const auto is_limited = [&] (int i) { return isLimited (*surfaces[static_cast<std::size_t> (i)]); };
+  // One with an extent may be absent where the others meet.
+  const auto is_limited = [&] (int i)
+  { return EnrichingSurface (surfaces[static_cast<std::size_t> (i)]).isLimited (); };
   const auto touch = [&] (int i, int j)
   {
     return plane (i) && plane (j) && warp (i) == warp (j) &&
