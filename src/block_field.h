@@ -62,6 +62,13 @@ public:
   bool
   gather (const Eigen::Vector3d &center, double extent, bool on_surface = false);
 
+  /** \brief Whether a point is in the ball that was gathered for. */
+  bool
+  covers (const Eigen::Vector3d &x) const
+  {
+    return (x - center_).norm () <= extent_;
+  }
+
   /** \brief Forget the points, then take up others. */
   void
   clearPoints ();
@@ -165,7 +172,7 @@ public:
   bool
   keepsApart (int face, int other, const Eigen::Vector3d &x) const
   {
-    return has_separations_ && (x - center_).norm () <= extent_ && faces_.groups ().keepsApart (face, other, x);
+    return has_separations_ && covers (x) && faces_.groups ().keepsApart (face, other, x);
   }
 
   /** \brief Take up a point for sketch (), as if no sharp surface and no other face were near.

@@ -16,7 +16,7 @@ BlockField::canSampleSides (const ImplicitField &field)
 bool
 BlockField::addSides (const Eigen::Vector3d &x, const std::vector<Side> &sides)
 {
-  if ((x - center_).norm () > extent_)
+  if (!covers (x))
     return false;
   const bool is_at_faces = has_separations_ && faces_.groups ().hasSeparationAt (x);
   const double reach = enrichment_.isEmpty () ? 0.0 : reachAt (x, is_at_faces);

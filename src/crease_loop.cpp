@@ -88,7 +88,7 @@ CreaseLoop::setOut (const Eigen::Vector3d &from)
   constexpr double TOLERANCE = 1e-5; // voxels
   std::vector<Side> sides;
   for (const int v : sides_)
-    sides.push_back (sideOf (*vertices_, v));
+    sides.push_back (sideOf (*vertices_, static_cast<std::size_t> (v)));
   solver_.emplace (std::move (sides), from, iso_, REACH * voxel_, TOLERANCE * voxel_);
 }
 

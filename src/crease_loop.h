@@ -126,11 +126,4 @@ private:
   std::vector<Eigen::Vector3d> gradients_; // of the pieces of f on the sides, where the vertex is
 };
 
-/** \brief The side of all creases that a vertex is on. */
-inline Side
-sideOf (const SurfaceVertices &vertices, int v)
-{
-  return {vertices.faces[static_cast<std::size_t> (v)], vertices.positions[static_cast<std::size_t> (v)]};
-}
-
 } // namespace erkpa

@@ -48,19 +48,4 @@ CreaseSolver::step (const std::vector<LocalSample> &samples)
   before_ = length;
 }
 
-bool
-moveToCrease (LocalField &local, const std::vector<Side> &sides, double iso, double reach, double tolerance,
-              Eigen::Vector3d &x)
-{
-  CreaseSolver solver (sides, x, iso, reach, tolerance);
-  std::vector<LocalSample> samples;
-  while (solver.isAtWork ())
-  {
-    local.sampleOnSides (solver.position (), sides, samples);
-    solver.step (samples);
-  }
-  x = solver.position ();
-  return solver.hasArrived ();
-}
-
 } // namespace erkpa

@@ -77,12 +77,4 @@ private:
   std::vector<Eigen::Vector3d> gradients_;
 };
 
-/** \brief Let a solver work to its end.
- * \param[in,out] x the point; anywhere within reach where it fails
- * \return false where there is no such place within reach
- */
-bool
-moveToCrease (LocalField &local, const std::vector<Side> &sides, double iso, double reach, double tolerance,
-              Eigen::Vector3d &x);
-
 } // namespace erkpa

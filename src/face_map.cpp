@@ -8,7 +8,9 @@
 #include "parallel_collect.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <set>
 #include <tuple>
 #include <utility>
 
@@ -28,6 +30,23 @@ searchOf (const std::vector<Meeting> &meetings, int threads)
   for (const Meeting &meeting : meetings)
     positions.push_back (meeting.position);
   return makeGridSearch (positions, threads);
+}
+
+/** \brief The places where faces are apart, in the local frame: of those that lie much closer together than each of
+ * them reaches, one. In thin walls every pair of nodes makes one, and they are looked through point by point. */
+std::vector<Eigen::Vector3f>
+thinOut (const ExtentParts &extent, const Eigen::Vector3d &origin)
+{
+  constexpr double CELL = 0.1; // of the reach
+  std::set<std::array<double, 3>> cells;
+  std::vector<Eigen::Vector3f> kept;
+  for (const Eigen::Vector3d &place : extent.points)
+  {
+    const Eigen::Vector3d local = place - origin, cell = (local / (CELL * extent.length)).array ().floor ();
+    if (cells.insert ({cell[0], cell[1], cell[2]}).second)
+      kept.push_back (local.cast<float> ());
+  }
+  return kept;
 }
 
 Eigen::Vector3f
@@ -82,9 +101,8 @@ FaceMap::addSurfaces (const OrientedPoints &points, const std::vector<SharpSurfa
       continue;
     const int a = number (face), b = number (other);
     const ExtentParts parts = extent->parts ();
-    for (const Eigen::Vector3d &place : parts.points)
-      meetings_.push_back ({(place - points.origin).cast<float> (), std::min (a, b), std::max (a, b),
-                            static_cast<int> (s), parts.length});
+    for (const Eigen::Vector3f &place : thinOut (parts, points.origin))
+      meetings_.push_back ({place, std::min (a, b), std::max (a, b), static_cast<int> (s), parts.length});
     largest_reach_ = std::max (largest_reach_, parts.length);
   }
 }

@@ -9,6 +9,7 @@
 #include <Eigen/Geometry>
 
 #include <algorithm>
+#include <utility>
 
 namespace erkpa
 {
@@ -92,8 +93,8 @@ private:
     sides.reserve (passages.size ()); // questions point there
     for (Passage &passage : passages)
     {
-      const Side one = sideOf (vertices_, std::min (passage.a, passage.b)),
-                 other = sideOf (vertices_, std::max (passage.a, passage.b));
+      const Side one = sideOf (vertices_, static_cast<std::size_t> (std::min (passage.a, passage.b))),
+                 other = sideOf (vertices_, static_cast<std::size_t> (std::max (passage.a, passage.b)));
       const Eigen::Vector3d middle = 0.5 * (one.place + other.place);
       passage.is_crease = turnBetween (normalOf (passage.a), normalOf (passage.b)) > CERTAIN_CREASE_TURN &&
                           sampler_.keepsApart (one.face, other.face, middle);
@@ -123,25 +124,10 @@ private:
   solve ()
   {
     std::vector<CreaseSolver *> solvers;
-    std::vector<SideSampler::Question> questions;
-    const auto ask = [&]
-    {
-      solvers.clear ();
-      questions.clear ();
-      for (CreaseLoop &loop : loops_)
-        if (CreaseSolver *const solver = loop.solver ())
-        {
-          solvers.push_back (solver);
-          questions.push_back ({solver->position (), &solver->sides (), {}});
-        }
-      return !solvers.empty ();
-    };
-    while (ask ())
-    {
-      sampler_.sample (questions, LocalField::Slope::EXACT);
-      for (std::size_t i = 0; i < solvers.size (); ++i)
-        solvers[i]->step (questions[i].samples);
-    }
+    for (CreaseLoop &loop : loops_)
+      if (CreaseSolver *const solver = loop.solver ())
+        solvers.push_back (solver);
+    solveTogether (sampler_, std::move (solvers));
     for (CreaseLoop &loop : loops_)
       loop.arrive ();
   }

@@ -65,11 +65,6 @@ public:
   LocalSample
   sample (const Eigen::Vector3d &x);
 
-  /** \brief The smooth piece of f that holds on a side of all creases, continued to x; undefined where the face is out
-   * of reach. */
-  LocalSample
-  sampleOnSide (const Eigen::Vector3d &x, const Side &side);
-
   /** \brief What is wanted as the gradient. */
   enum class Slope
   {
@@ -77,7 +72,8 @@ public:
     OF_THE_FIT ///< its coefficients held, as if the weights did not change with x: quicker, and tells edges as well
   };
 
-  /** \brief The same for several sides, of which those with the same face share a fit. */
+  /** \brief The smooth pieces of f that hold on sides of all creases, continued to x; undefined where the face is out
+   * of reach. Sides with the same face share a fit. */
   void
   sampleOnSides (const Eigen::Vector3d &x, const std::vector<Side> &sides, std::vector<LocalSample> &samples,
                  Slope slope = Slope::EXACT);

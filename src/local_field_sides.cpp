@@ -9,14 +9,6 @@
 namespace erkpa
 {
 
-LocalSample
-LocalField::sampleOnSide (const Eigen::Vector3d &x, const Side &side)
-{
-  std::vector<LocalSample> samples;
-  sampleOnSides (x, {side}, samples);
-  return samples.front ();
-}
-
 void
 LocalField::sampleOnSides (const Eigen::Vector3d &x, const std::vector<Side> &sides, std::vector<LocalSample> &samples,
                            Slope slope)

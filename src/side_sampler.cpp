@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "side_sampler.h"
 
+#include <algorithm>
+
 namespace erkpa
 {
 
@@ -12,12 +14,38 @@ SideSampler::gather (const Eigen::Vector3d &center, double extent)
     local_.gather (center, extent);
 }
 
-LocalSample
-SideSampler::sample (const Eigen::Vector3d &x)
+LocalField &
+SideSampler::localAt (const Eigen::Vector3d &x)
 {
   if (has_block_)
     local_.gather (x, 0.0);
-  return local_.sample (x);
+  return local_;
+}
+
+LocalSample
+SideSampler::sample (const Eigen::Vector3d &x)
+{
+  return localAt (x).sample (x);
+}
+
+void
+SideSampler::look (std::vector<Look> &looks)
+{
+  block_.clearPoints ();
+  std::vector<Look *> together, alone;
+  for (Look &at : looks)
+    (has_block_ && block_.covers (at.x) && block_.addPoint (at.x) ? together : alone).push_back (&at);
+  block_.evaluate (false);
+  for (std::size_t i = 0; i < together.size (); ++i)
+    if (block_.isUnsettled (i))
+      alone.push_back (together[i]);
+    else
+      *together[i] = {together[i]->x, block_.value (i), block_.face (i)};
+  for (Look *const at : alone)
+  {
+    at->value = localAt (at->x).value (at->x);
+    at->face = local_.face ();
+  }
 }
 
 void
@@ -51,6 +79,24 @@ SideSampler::takeAnswers (const std::vector<BlockField::SideAnswer> &answers, st
     static_cast<FieldSample &> (question.samples[i]) = answers[first + i].sample;
   }
   return true;
+}
+
+void
+solveTogether (SideSampler &sampler, std::vector<CreaseSolver *> solvers)
+{
+  const auto is_done = [] (const CreaseSolver *solver) { return !solver->isAtWork (); };
+  for (;;)
+  {
+    solvers.erase (std::remove_if (solvers.begin (), solvers.end (), is_done), solvers.end ());
+    if (solvers.empty ())
+      return;
+    std::vector<SideSampler::Question> questions;
+    for (const CreaseSolver *const solver : solvers)
+      questions.push_back ({solver->position (), &solver->sides (), {}});
+    sampler.sample (questions, LocalField::Slope::EXACT);
+    for (std::size_t i = 0; i < solvers.size (); ++i)
+      solvers[i]->step (questions[i].samples);
+  }
 }
 
 } // namespace erkpa

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "block_field.h"
+#include "crease_solver.h"
 #include "local_field.h"
 
 #include <cstddef>
@@ -43,6 +44,18 @@ public:
   void
   sample (std::vector<Question> &questions, LocalField::Slope slope);
 
+  /** \brief What the field itself, as which no wall is thickened, is at a point. */
+  struct Look
+  {
+    Eigen::Vector3d x;
+    double value; ///< NaN where undefined
+    int face;     ///< see LocalField::face ()
+  };
+
+  /** \brief Look at the field at points near those gathered for. */
+  void
+  look (std::vector<Look> &looks);
+
   /** \brief The field itself at a point near those gathered for; then its attributes may be asked for. */
   LocalSample
   sample (const Eigen::Vector3d &x);
@@ -67,6 +80,9 @@ public:
   }
 
 private:
+  LocalField &
+  localAt (const Eigen::Vector3d &x);
+
   bool
   takeAnswers (const std::vector<BlockField::SideAnswer> &answers, std::size_t first, Question &question) const;
 
@@ -74,5 +90,9 @@ private:
   BlockField block_;
   bool uses_lanes_, has_block_ = false;
 };
+
+/** \brief Go on with solvers near points gathered for, together, until none is at work. */
+void
+solveTogether (SideSampler &sampler, std::vector<CreaseSolver *> solvers);
 
 } // namespace erkpa

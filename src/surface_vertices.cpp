@@ -3,9 +3,9 @@
 
 #include "block_evaluator.h"
 #include "block_groups.h"
-#include "crease_solver.h"
 #include "grid_bits.h"
 #include "threads.h"
+#include "wall_vertices.h"
 
 #include <Eigen/Geometry>
 
@@ -22,7 +22,7 @@ namespace
 
 constexpr double TOLERANCE = 1e-4; // of a voxel, along the edge
 constexpr double MARGIN = 1e-3;    // of a voxel: a vertex keeps this far from the grid nodes, or triangles degenerate
-constexpr int MAX_STEPS = 12;
+constexpr int MAX_STEPS = 16;      // as many as halving an edge takes to TOLERANCE, where f jumps, and a few more
 constexpr double LEAST_SHORT = 0.03, MOST_SHORT = 0.1; // of a voxel: steps after which nobody looks where they lead
 
 /** \brief An edge of the grid on which f - iso changes its sign, and what is known of the root on it. */
@@ -57,35 +57,6 @@ struct EdgeRoot
   }
 };
 
-/** \brief Moves a vertex of a thickened wall to the piece of f of its face; to the edge of the wall where that lies
- * beyond it. */
-void
-moveToFace (LocalField &local, const PolygonizerOptions &options, double voxel, std::size_t vertex,
-            SurfaceVertices &vertices)
-{
-  constexpr double REACH = 1.5, BEYOND = 0.02; // voxels
-  const Eigen::Vector3d start = vertices.positions[vertex];
-  Eigen::Vector3d position = start;
-  std::vector<Side> sides{{vertices.faces[vertex], start}};
-  const auto move = [&]
-  { return moveToCrease (local, sides, options.iso_level, REACH * voxel, TOLERANCE * voxel, position); };
-  if (!move ())
-    return;
-  const double least_wall = local.thicken (0.0);
-  const LocalSample there = local.sample (position);
-  local.thicken (least_wall);
-  if (std::abs (there.value - options.iso_level) > BEYOND * voxel && local.face () != vertices.faces[vertex])
-  {
-    sides.push_back ({local.face (), position});
-    if (!move ())
-      return;
-  }
-  vertices.positions[vertex] = position;
-  const LocalSample piece = local.sampleOnSide (position, sides.front ());
-  if (piece.isDefined () && piece.gradient.norm () > 0.0)
-    vertices.normals[vertex] = piece.gradient.normalized ();
-}
-
 /** \brief Puts the vertices on the cut edges of blocks. */
 class VertexPlacer
 {
@@ -99,9 +70,15 @@ public:
   {
   }
 
+  struct Worker
+  {
+    GridField field;
+    std::vector<std::size_t> in_walls; ///< vertices of thickened walls
+  };
+
   /** \brief Place the vertices of some blocks that share a gathering of the field's nodes: see BlockGroups. */
   void
-  placeInBlocks (GridField &worker, const int *first_block, const int *last_block) const
+  placeInBlocks (Worker &worker, const int *first_block, const int *last_block) const
   {
     std::vector<EdgeRoot> roots;
     for (const BlockPart &part : parts_)
@@ -123,13 +100,13 @@ public:
         continue;
       const Eigen::Vector3d center = box.center ();
       const double extent = 0.5 * box.diagonal ().norm ();
-      if (worker.block.gather (center, extent, true))
-        placeTogether (worker.block, roots);
+      if (worker.field.block.gather (center, extent, true))
+        placeTogether (worker, roots);
       if (roots.empty ())
         continue;
-      worker.local.gather (center, extent);
+      worker.field.local.gather (center, extent);
       for (EdgeRoot &root : roots)
-        placeAlone (worker.local, root);
+        placeAlone (worker, root);
     }
   }
 
@@ -165,16 +142,19 @@ private:
 
   /** \brief All roots of a block by Newton steps from the linear guess, each step for all of them at once.
    *
-   * A last short step is taken without a look at where it leads: what it leaves is of second order.
+   * A last short step is taken without a look at where it leads: what it leaves is of second order, unless f jumps,
+   * which shows in the number of steps.
    * \param[in,out] roots those that want LocalField are left
    */
   void
-  placeTogether (BlockField &field, std::vector<EdgeRoot> &roots) const
+  placeTogether (Worker &worker, std::vector<EdgeRoot> &roots) const
   {
-    constexpr int ROUNDS = 5;
+    BlockField &field = worker.field.block;
+    constexpr int MOST_SMOOTH = 5;
     std::vector<EdgeRoot> alone;
-    for (int round = 0; round < ROUNDS && !roots.empty (); ++round)
+    for (int step = 0; !roots.empty (); ++step)
     {
+      const double short_step = step < MOST_SMOOTH ? short_step_ : 0.0;
       field.clearPoints ();
       std::size_t taken = 0;
       for (const EdgeRoot root : roots)
@@ -193,26 +173,26 @@ private:
       {
         EdgeRoot root = roots[i];
         const double slope = field.gradient (i)[root.axis] * grid_.voxelSize ();
-        if (!field.isSettled (i) || field.thickening (i) != 0.0)
+        if (!field.isSettled (i))
           alone.push_back (root);
-        else if (root.refine (field.value (i) - options_.iso_level, slope) > short_step_)
+        else if (step < MAX_STEPS && root.refine (field.value (i) - options_.iso_level, slope) > short_step)
           roots[left++] = root;
         else
         {
           const std::size_t vertex = vertexOf (root);
           storeVertex (field, i, positionOf (root), vertex, vertices_);
-          if (!vertices_.found.empty ())
-            vertices_.found[vertex] = vertices_.positions[vertex];
+          noteWall (worker, vertex, field.thickening (i));
         }
       }
       roots.erase (roots.begin () + static_cast<std::ptrdiff_t> (left), roots.end ());
     }
-    roots.insert (roots.end (), alone.begin (), alone.end ());
+    roots = std::move (alone);
   }
 
   void
-  placeAlone (LocalField &local, EdgeRoot &root) const
+  placeAlone (Worker &worker, EdgeRoot &root) const
   {
+    LocalField &local = worker.field.local;
     LocalSample sample;
     Eigen::Vector3d position;
     for (int step = 0;; ++step)
@@ -225,10 +205,17 @@ private:
     }
     const std::size_t vertex = vertexOf (root);
     storeVertex (local, sample, position, vertex, vertices_);
-    if (!vertices_.found.empty ())
-      vertices_.found[vertex] = position;
-    if (local.thickening () != 0.0)
-      moveToFace (local, options_, grid_.voxelSize (), vertex, vertices_);
+    noteWall (worker, vertex, local.thickening ());
+  }
+
+  void
+  noteWall (Worker &worker, std::size_t vertex, double thickening) const
+  {
+    if (vertices_.found.empty ())
+      return;
+    vertices_.found[vertex] = vertices_.positions[vertex];
+    if (thickening != 0.0)
+      worker.in_walls.push_back (vertex);
   }
 
   const PolygonizerOptions &options_;
@@ -290,18 +277,28 @@ placeVertices (const ImplicitField &field, const PolygonizerOptions &options, co
   std::vector<int> blocks (static_cast<std::size_t> (grid.blockCount ()));
   std::iota (blocks.begin (), blocks.end (), 0);
   const BlockGroups groups (grid, std::move (blocks), field.typicalRadius () / grid.voxelSize ());
+  std::vector<std::size_t> in_walls;
   constexpr std::size_t SLICE = 8192;
   for (std::size_t first = 0; first < groups.size (); first += SLICE)
   {
     const std::size_t last = std::min (first + SLICE, groups.size ());
     parallelFor (
-        last - first, options.threads, [&] { return GridField (field, options, grid.voxelSize (), lattice); },
-        [&] (GridField &worker, std::size_t i)
+        last - first, options.threads,
+        [&] {
+          return VertexPlacer::Worker{GridField (field, options, grid.voxelSize (), lattice), {}};
+        },
+        [&] (VertexPlacer::Worker &worker, std::size_t i)
         { placer.placeInBlocks (worker, groups.begin (first + i), groups.end (first + i)); },
-        [&report] (const GridField &worker) { worker.addTo (report); });
+        [&] (const VertexPlacer::Worker &worker)
+        {
+          worker.field.addTo (report);
+          in_walls.insert (in_walls.end (), worker.in_walls.begin (), worker.in_walls.end ());
+        });
     if (progress)
       progress (static_cast<double> (last) / static_cast<double> (groups.size ()));
   }
+  std::sort (in_walls.begin (), in_walls.end ()); // whichever thread found them
+  moveToFaces (field, options, in_walls, vertices, report);
 }
 
 } // namespace erkpa

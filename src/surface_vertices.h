@@ -74,6 +74,13 @@ struct SurfaceVertices
   }
 };
 
+/** \brief The side of all creases that a vertex is on. */
+inline Side
+sideOf (const SurfaceVertices &vertices, std::size_t vertex)
+{
+  return {vertices.faces[vertex], vertices.positions[vertex]};
+}
+
 /** \brief Put a vertex on every cut edge of the grid, on f = iso.
  *
  * The root on each edge is found by safeguarded Newton steps from the linear guess.

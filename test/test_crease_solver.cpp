@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "field_tests.h"
 
-#include "crease_solver.h"
+#include "side_sampler.h"
 
 #include <erkpa/sharp_detection.h>
 
@@ -33,6 +33,7 @@ TEST (CreaseSolver, GoesOnUntilThePiecesOfTheFieldMeetWhereTheyAreCurved)
   const auto field = shapes::field (points, options);
   const double spacing = field->spacing (), tolerance = 1e-5 * spacing;
   LocalField local (*field);
+  erkpa::SideSampler sampler (*field);
   for (int i = 0; i < 12; ++i)
   {
     const Vector3d out (std::cos (0.5 * i), std::sin (0.5 * i), 0.0), up = Vector3d::UnitZ ();
@@ -40,9 +41,15 @@ TEST (CreaseSolver, GoesOnUntilThePiecesOfTheFieldMeetWhereTheyAreCurved)
     const std::vector<Side> sides{{faceAt (local, on_side), on_side}, {faceAt (local, on_lid), on_lid}};
     ASSERT_NE (sides[0].face, sides[1].face);
     Vector3d x = 0.5 * (out + up) + 0.8 * spacing * (out - up);
-    ASSERT_TRUE (erkpa::moveToCrease (local, sides, 0.0, 3.0 * spacing, tolerance, x));
-    for (const Side &side : sides)
-      EXPECT_LT (std::abs (local.sampleOnSide (x, side).value), 3.0 * tolerance);
+    erkpa::CreaseSolver solver (sides, x, 0.0, 3.0 * spacing, tolerance);
+    sampler.gather (x, 3.0 * spacing);
+    erkpa::solveTogether (sampler, {&solver});
+    ASSERT_TRUE (solver.hasArrived ());
+    x = solver.position ();
+    std::vector<erkpa::LocalSample> samples;
+    local.sampleOnSides (x, sides, samples);
+    for (const erkpa::LocalSample &sample : samples)
+      EXPECT_LT (std::abs (sample.value), 3.0 * tolerance);
     EXPECT_LT ((x - 0.5 * (out + up)).norm (), 0.5 * spacing);
   }
 }

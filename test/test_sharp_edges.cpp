@@ -426,6 +426,14 @@ TEST (SharpEdges, KeepAThinPlateClosed)
   expectClosedBall (result);
   const double volume = 8.0 * plate.half.prod ();
   EXPECT_NEAR (shapes::volume (result.mesh), volume, 0.1 * volume);
+  double farthest = 0.0; // from the two faces, between their edges
+  for (const Eigen::Vector3f &v : result.mesh.vertices)
+  {
+    const Vector3d p = plate.rotation.transpose () * (v.cast<double> () - plate.offset);
+    if (((p.cwiseAbs () - plate.half).array ().head<2> () < -plate.spacing).all ())
+      farthest = std::max (farthest, std::abs (std::abs (p[2]) - plate.half[2]));
+  }
+  EXPECT_LT (farthest, 0.05 * plate.half[2]);
 }
 
 TEST (SharpEdges, ThatAreAcuteMakeNoTrianglesThatPassThroughEachOther)
