@@ -62,24 +62,78 @@ median (std::vector<double> values)
   return *middle;
 }
 
-/** \brief Standard deviation of the nearest \a count neighbours along their thinnest direction. */
-double
-thicknessOf (const OrientedPoints &points, const SortedNeighbors &neighbors, std::size_t count)
+/** \brief Whether a node is on the same side of thin walls as another, as far as normals are known. */
+bool
+looksTheSameWay (const OrientedPoints &points, int node, int other)
 {
-  count = std::min (count, neighbors.size ());
-  const Eigen::Vector3f &node = points.positions[static_cast<std::size_t> (neighbors.front ().second)];
+  return points.normals.empty () ||
+         points.normals[static_cast<std::size_t> (node)].dot (points.normals[static_cast<std::size_t> (other)]) >= 0.0f;
+}
+
+/** \brief Standard deviation of the nearest \a most neighbours along their thinnest direction, but for the other sides
+ * of thin walls, which are no noise. */
+double
+thicknessOf (const OrientedPoints &points, const SortedNeighbors &neighbors, std::size_t most)
+{
+  const int first = neighbors.front ().second;
+  const Eigen::Vector3f &node = points.positions[static_cast<std::size_t> (first)];
+  std::vector<std::size_t> used;
+  for (std::size_t i = 0; i < neighbors.size () && used.size () < most; ++i)
+    if (looksTheSameWay (points, first, neighbors[i].second))
+      used.push_back (static_cast<std::size_t> (neighbors[i].second));
+  const auto count = static_cast<double> (used.size ());
   Eigen::Vector3d mean = Eigen::Vector3d::Zero ();
   Eigen::Matrix3d products = Eigen::Matrix3d::Zero ();
-  for (std::size_t i = 0; i < count; ++i)
+  for (const std::size_t neighbor : used)
   {
-    const auto neighbor = static_cast<std::size_t> (neighbors[i].second);
     const Eigen::Vector3d p = (points.positions[neighbor] - node).cast<double> ();
-    mean += p / static_cast<double> (count);
-    products += p * p.transpose () / static_cast<double> (count);
+    mean += p / count;
+    products += p * p.transpose () / count;
   }
   const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver (products - mean * mean.transpose (),
                                                                Eigen::EigenvaluesOnly);
   return std::sqrt (std::max (0.0, solver.eigenvalues ()[0]));
+}
+
+constexpr std::array<int, 7> SIZES{CLEAN_SUPPORT, 28, 40, 56, 80, 112, 160};
+
+/** \brief What supports of those sizes make at a node; negative where there are fewer neighbours. */
+struct SizesAtNode
+{
+  SizesAtNode ()
+  {
+    tilts.fill (-1.0);
+    own.fill (-1.0);
+  }
+
+  std::array<double, SIZES.size ()> tilts; ///< radians
+  std::array<double, SIZES.size ()> own;   ///< neighbours on the same side of thin walls
+};
+
+SizesAtNode
+measureSizes (const OrientedPoints &points, const SortedNeighbors &neighbors)
+{
+  SizesAtNode sizes;
+  const double noise = thicknessOf (points, neighbors, 10);
+  std::size_t seen = 0, own = 0;
+  for (std::size_t i = 0; i < SIZES.size () && SIZES[i] <= static_cast<int> (neighbors.size ()); ++i)
+  {
+    for (; seen < static_cast<std::size_t> (SIZES[i]); ++seen)
+      own += looksTheSameWay (points, neighbors.front ().second, neighbors[seen].second) ? 1 : 0;
+    sizes.own[i] = static_cast<double> (own);
+    sizes.tilts[i] = noise / std::sqrt (static_cast<double> (neighbors[seen - 1].first) * SIZES[i]);
+  }
+  return sizes;
+}
+
+double
+medianOf (const std::vector<SizesAtNode> &nodes, std::array<double, SIZES.size ()> SizesAtNode::*what, std::size_t size)
+{
+  std::vector<double> values;
+  values.reserve (nodes.size ());
+  for (const SizesAtNode &node : nodes)
+    values.push_back ((node.*what)[size]);
+  return median (std::move (values));
 }
 
 } // namespace
@@ -101,40 +155,18 @@ SupportSizes
 chooseSupportSizes (const OrientedPoints &points, const NeighborSearch &search, int threads)
 {
   constexpr double TILT = 0.01, WITHIN_FACES = 0.0085; // radians
-  constexpr std::array<int, 7> SIZES{CLEAN_SUPPORT, 28, 40, 56, 80, 112, 160};
-  using Tilts = std::array<double, SIZES.size ()>; // negative where there are fewer neighbours
-  Tilts none;
-  none.fill (-1.0);
-  const std::vector<Tilts> tilts = measureSample (
-      points.positions, search, 400, SIZES.back (), threads, none,
-      [&] (const SortedNeighbors &neighbors)
-      {
-        Tilts of_node = none;
-        const double noise = thicknessOf (points, neighbors, 10);
-        for (std::size_t i = 0; i < SIZES.size () && SIZES[i] <= static_cast<int> (neighbors.size ()); ++i)
-        {
-          const double radius = std::sqrt (neighbors[static_cast<std::size_t> (SIZES[i] - 1)].first);
-          of_node[i] = noise / (radius * std::sqrt (SIZES[i]));
-        }
-        return of_node;
-      });
-  std::array<double, SIZES.size ()> medians{};
-  for (std::size_t i = 0; i < SIZES.size (); ++i)
-  {
-    std::vector<double> of_size;
-    of_size.reserve (tilts.size ());
-    for (const Tilts &of_node : tilts)
-      of_size.push_back (of_node[i]);
-    medians[i] = median (of_size);
-  }
-  const auto least_below = [&] (double tilt)
+  constexpr double LEAST_OWN = 0.8;                    // of CLEAN_SUPPORT
+  const std::vector<SizesAtNode> nodes =
+      measureSample (points.positions, search, 400, SIZES.back (), threads, SizesAtNode (),
+                     [&] (const SortedNeighbors &neighbors) { return measureSizes (points, neighbors); });
+  const auto least = [&] (double most_tilt, double least_own)
   {
     for (std::size_t i = 0; i + 1 < SIZES.size (); ++i)
-      if (medians[i] <= tilt)
+      if (medianOf (nodes, &SizesAtNode::tilts, i) <= most_tilt && medianOf (nodes, &SizesAtNode::own, i) >= least_own)
         return SIZES[i];
     return SIZES.back ();
   };
-  return {least_below (TILT), least_below (WITHIN_FACES)};
+  return {least (TILT, 0.0), least (WITHIN_FACES, LEAST_OWN * CLEAN_SUPPORT)};
 }
 
 } // namespace erkpa

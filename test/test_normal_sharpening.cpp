@@ -223,3 +223,11 @@ TEST (PointLayout, TakesMoreNeighborsAgainstNoiseWhereFacesAreFittedApart)
   }
   EXPECT_GT (more, 0);
 }
+
+/** \brief The other side of a wall thinner than the points are apart lies in the middle of every neighbourhood. */
+TEST (PointLayout, TakesNoOtherSideOfAThinWallForNoise)
+{
+  const erkpa::PointLayout layout (*shapes::points (shapes::box (8000, {1.0, 0.7, 0.008})), 0);
+  EXPECT_EQ (layout.k, erkpa::CLEAN_SUPPORT);
+  EXPECT_LE (layout.k_within_faces, 2 * erkpa::CLEAN_SUPPORT); // as many on each side
+}
