@@ -13,6 +13,7 @@
 #include <limits>
 #include <memory>
 #include <new>
+#include <sstream>
 #include <string>
 #include <vector>
 
@@ -117,18 +118,19 @@ reportPoints (const std::string &class_name, const Report &report, const Options
   if (points.no_confidence > 0)
     PCL_WARN ("[%s::reconstruct] %zu points have no positive confidence: they are left out.\n", class_name.c_str (),
               points.no_confidence);
-  if (points.without_normal == 0)
-    return;
   const Eigen::Vector3d &eye = options.normals.view_point;
+  std::ostringstream how;
   if (report.orientation == Orientation::VIEW_POINT)
-    PCL_WARN ("[%s::reconstruct] %zu points have no usable normal: normals are estimated and oriented to the view "
-              "point (%g, %g, %g).\n",
-              class_name.c_str (), points.without_normal, eye.x (), eye.y (), eye.z ());
+    how << "to the view point (" << eye.x () << ", " << eye.y () << ", " << eye.z () << ")";
   else
-    PCL_WARN ("[%s::reconstruct] %zu points have no usable normal: normals are estimated and oriented outwards, from "
-              "neighbour to neighbour%s.\n",
-              class_name.c_str (), points.without_normal,
-              options.normals.has_view_point ? ", where the view point cannot have seen the surface" : "");
+    how << "outwards, from neighbour to neighbour"
+        << (options.normals.has_view_point ? ", where the view point cannot have seen the surface" : "");
+  if (points.without_normal > 0)
+    PCL_WARN ("[%s::reconstruct] %zu points have no usable normal: normals are estimated and oriented %s.\n",
+              class_name.c_str (), points.without_normal, how.str ().c_str ());
+  else if (report.normals_contradicted)
+    PCL_WARN ("[%s::reconstruct] Normals of neighbours look opposite ways: they are oriented anew, %s.\n",
+              class_name.c_str (), how.str ().c_str ());
 }
 
 void

@@ -62,6 +62,16 @@ estimateNormals (OrientedPoints &points, const PointLayout &layout, const Normal
   return {};
 }
 
+Orientation
+reorientNormals (OrientedPoints &points, const PointLayout &layout, const NormalOptions &options)
+{
+  std::vector<Eigen::Vector3f> normals (points.size (), Eigen::Vector3f::Zero ());
+  normals.swap (points.normals); // as if none were given
+  const Orientation orientation = orientNormals (points, *layout.search, layout.k, options, normals);
+  points.normals.swap (normals);
+  return orientation;
+}
+
 RefinedNormals
 refineNormals (const PointLayout &layout, bool estimated, int threads, OrientedPoints &points)
 {

@@ -126,14 +126,12 @@ respectSharpEdges (const PointLayout &layout, Options &options, OrientedPoints &
   std::vector<SharpSurface::ConstPtr> &surfaces = options.field.sharp_surfaces;
   const SharpOptions &sharp = options.sharp;
   const int threads = options.polygonizer.threads;
-  std::vector<Eigen::Vector3f> given; // but for those that are turned
+  std::vector<Eigen::Vector3f> given; // but for their signs
   if (options.normals.sharpen)
   {
     const StageClock clock (report.seconds_normals);
-    const std::size_t turned = turnFlippedNormals (*layout.search, threads, points);
     given = points.normals;
     report.normals = refineNormals (layout, report.points.without_normal > 0, threads, points);
-    report.normals.turned = turned;
   }
   const StageClock clock (report.seconds_sharp);
   std::vector<SharpSurface::ConstPtr> found, between;
@@ -151,21 +149,34 @@ respectSharpEdges (const PointLayout &layout, Options &options, OrientedPoints &
   return outcome;
 }
 
-/** \brief Estimate the normals that are missing, and see to it that they respect sharp edges. */
+/** \brief Estimate the normals that are missing, and see to it that all agree on which side is out. */
+Outcome
+completeNormals (const PointLayout &layout, const Options &options, OrientedPoints &points, Report &report)
+{
+  const StageClock clock (report.seconds_normals);
+  if (report.points.without_normal > 0)
+  {
+    const Outcome outcome = estimateNormals (points, layout, options.normals, report.orientation);
+    if (!outcome.ok ())
+      return outcome;
+  }
+  const int threads = options.polygonizer.threads;
+  const NormalSigns signs = judgeSigns (*layout.search, threads, points);
+  report.normals_contradicted = signs == NormalSigns::CONTRADICT;
+  if (report.normals_contradicted)
+    report.orientation = reorientNormals (points, layout, options.normals);
+  else if (signs != NormalSigns::AGREE)
+    report.normals_turned = turnFlippedNormals (*layout.search, signs, threads, points);
+  return {};
+}
+
+/** \brief Have normals everywhere that respect sharp edges. */
 Outcome
 prepareNormals (const PointLayout &layout, Options &options, OrientedPoints &points, Report &report)
 {
-  const bool is_missing = report.points.without_normal > 0;
   const bool has_edges =
       options.sharp.automatic || !options.sharp.faces.empty () || !options.field.sharp_surfaces.empty ();
-  if (!is_missing && !has_edges)
-    return {};
-  Outcome outcome;
-  if (is_missing)
-  {
-    const StageClock clock (report.seconds_normals);
-    outcome = estimateNormals (points, layout, options.normals, report.orientation);
-  }
+  const Outcome outcome = completeNormals (layout, options, points, report);
   return outcome.ok () && has_edges ? respectSharpEdges (layout, options, points, report) : outcome;
 }
 

@@ -245,6 +245,19 @@ TEST (Erkpa, EstimatesNormalsWhereTheyAreZeroOrNan)
   EXPECT_EQ (erkpa.getReport ().points.without_normal, 2000u);
 }
 
+TEST (Erkpa, OrientsNormalsThatNobodyHasOriented)
+{
+  shapes::Samples sphere = shapes::sphere (3000);
+  for (std::size_t i = 0; i < sphere.size (); ++i)
+    sphere.normals[i] *= i * 7 % 11 < 5 ? -1.0 : 1.0;
+  ERKPA<pcl::PointNormal> erkpa;
+  erkpa.setInputCloud (shapes::cloud<pcl::PointNormal> (sphere));
+  pcl::PolygonMesh mesh;
+  erkpa.reconstruct (mesh);
+  expectSphere<pcl::PointNormal> (mesh);
+  EXPECT_TRUE (erkpa.getReport ().normals_contradicted);
+}
+
 TEST (Erkpa, EstimatesNormalsOfPointsThatCannotHaveThem)
 {
   const auto cloud = shapes::cloud<pcl::PointXYZ> (shapes::sphere (3000));

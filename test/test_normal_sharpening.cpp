@@ -166,23 +166,66 @@ TEST (NormalSharpening, TellsSmearedNormalsFromExactAndFromRandomOnes)
   EXPECT_FALSE (areSmeared (sphere, sphere.points)); // no edges
 }
 
-TEST (NormalFlips, AreTurnedAtSinglePointsAndNotOnTheOtherSideOfAThinWall)
+/** \brief Flips a share of normals at random. */
+OrientedPoints
+flipped (const shapes::Samples &samples, double share)
 {
-  const shapes::Samples box = shapes::box (6000, {1.0, 0.7, 0.5});
-  OrientedPoints points = *shapes::points (box);
-  const auto turn = [] (OrientedPoints &of)
-  { return erkpa::turnFlippedNormals (*erkpa::makeKdTreeSearch (of.positions), 0, of); };
-  EXPECT_EQ (turn (points), 0u);
-  std::size_t flipped = 0;
-  for (std::size_t i = 0; i < points.size (); i += 29, ++flipped)
-    points.normals[i] *= -1.0f;
-  EXPECT_GE (turn (points), flipped - flipped / 20) << "some at edges are let be";
+  OrientedPoints points = *shapes::points (samples);
+  std::mt19937 random (7);
+  std::bernoulli_distribution flip (share);
+  for (Eigen::Vector3f &normal : points.normals)
+    normal *= flip (random) ? -1.0f : 1.0f;
+  return points;
+}
+
+/** \brief What becomes of normals whose signs do not agree, as reconstruction goes about it. */
+erkpa::NormalSigns
+settleSigns (OrientedPoints &points)
+{
+  const erkpa::PointLayout layout (points, 0);
+  const erkpa::NormalSigns signs = erkpa::judgeSigns (*layout.search, 0, points);
+  if (signs == erkpa::NormalSigns::CONTRADICT)
+    erkpa::reorientNormals (points, layout, {});
+  else if (signs != erkpa::NormalSigns::AGREE)
+    erkpa::turnFlippedNormals (*layout.search, signs, 0, points);
+  return signs;
+}
+
+std::size_t
+countWrong (const OrientedPoints &points, const shapes::Samples &samples)
+{
   std::size_t wrong = 0;
   for (std::size_t i = 0; i < points.size (); ++i)
-    wrong += points.normals[i].cast<double> ().dot (box.normals[i]) < 0.0 ? 1 : 0;
-  EXPECT_LT (wrong, flipped / 20);
-  OrientedPoints plate = *shapes::points (shapes::box (6000, {1.0, 1.0, 0.005})); // a third of the spacing thick
-  EXPECT_EQ (turn (plate), 0u);
+    wrong += points.normals[i].cast<double> ().dot (samples.normals[i]) < 0.0 ? 1 : 0;
+  return wrong;
+}
+
+TEST (NormalFlips, AreTurnedWhateverTheirShare)
+{
+  const shapes::Samples torus = shapes::torus (8000, 1.0, 0.4), box = shapes::box (8000, {1.0, 0.7, 0.5});
+  for (const auto &[share, signs] :
+       {std::pair{0.0, erkpa::NormalSigns::AGREE}, std::pair{0.03, erkpa::NormalSigns::SINGLE_ONES_FLIPPED},
+        std::pair{0.1, erkpa::NormalSigns::MANY_FLIPPED}, std::pair{0.2, erkpa::NormalSigns::MANY_FLIPPED},
+        std::pair{0.35, erkpa::NormalSigns::CONTRADICT}, std::pair{0.5, erkpa::NormalSigns::CONTRADICT}})
+    for (const shapes::Samples *samples : {&torus, &box})
+    {
+      OrientedPoints points = flipped (*samples, share);
+      EXPECT_EQ (settleSigns (points), signs) << share;
+      EXPECT_LE (countWrong (points, *samples), samples->size () / 500) << share << ", single ones at edges are let be";
+    }
+}
+
+TEST (NormalFlips, AreNotTheOtherSidesOfThinWalls)
+{
+  for (const double thickness : {0.02, 0.01}) // 0.6 and 0.3 of the spacing
+  {
+    const shapes::Samples plate = shapes::box (6000, {1.0, 1.0, 0.5 * thickness});
+    OrientedPoints points = *shapes::points (plate);
+    EXPECT_EQ (settleSigns (points), erkpa::NormalSigns::AGREE) << thickness;
+    points = flipped (plate, 0.03);
+    settleSigns (points);
+    EXPECT_LE (countWrong (points, plate), plate.size () / 25) << thickness << ", none more at least";
+  }
 }
 
 TEST (NormalSmoothing, TakesRandomErrorsOffAndKnowsTheirSize)

@@ -530,7 +530,7 @@ TEST (SharpEdges, AreFoundWhereNormalsOfSinglePointsAreFlipped)
   EXPECT_MESH_CONTRACT (mesh, true);
   EXPECT_EQ (stage.getReport ().topology.euler, 2);
   EXPECT_EQ (stage.getCorners ().size (), 8u);
-  EXPECT_GT (stage.getReport ().normals.turned, samples.size () / 25);
+  EXPECT_GT (stage.getReport ().normals_turned, samples.size () / 25);
 }
 
 TEST (SharpEdges, HaveTheNormalsOfEachSideWhereTheyAreSplit)

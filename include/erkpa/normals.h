@@ -4,8 +4,6 @@
 #include <erkpa/oriented_points.h>
 #include <erkpa/point_layout.h>
 
-#include <cstddef>
-
 namespace erkpa
 {
 
@@ -19,10 +17,10 @@ struct NormalOptions
   int threads = 0;     ///< 0 = all processors
 };
 
-/** \brief How estimated normals got their sign. */
+/** \brief How normals got their sign that are estimated, or were given without one. */
 enum class Orientation
 {
-  NONE,       ///< nothing was estimated
+  NONE,       ///< they were given, and keep their signs
   VIEW_POINT, ///< towards the view point
   PROPAGATION ///< at least in part from neighbour to neighbour, outwards: the view point is unknown or cannot
               ///< have seen the surface
@@ -35,10 +33,13 @@ Outcome
 estimateNormals (OrientedPoints &points, const PointLayout &layout, const NormalOptions &options,
                  Orientation &orientation);
 
+/** \brief Give the normals, which point nowhere in particular, their signs, as estimateNormals () does. */
+Orientation
+reorientNormals (OrientedPoints &points, const PointLayout &layout, const NormalOptions &options);
+
 /** \brief What refineNormals () did. */
 struct RefinedNormals
 {
-  std::size_t turned = 0; ///< of single points that looked the other way than all around them
   bool sharpened = false; ///< normals smeared across edges became those of one face each
   bool smoothed =
       false; ///< noise was taken out of the normals, with which faces are told apart; the field keeps those given

@@ -38,9 +38,11 @@ struct Report
 {
   PointCounts points;
   Orientation orientation = Orientation::NONE;
-  int k = 0;                                          ///< neighbours of the support in force; 0 with a radius
-  double radius = 0.0;                                ///< support radius in force, the median where it varies; 0 with k
-  RefinedNormals normals;                             ///< what was done to the normals for the sake of sharp edges
+  bool normals_contradicted = false; ///< neighbours looked opposite ways: they were oriented as if none had a sign
+  std::size_t normals_turned = 0;    ///< of single points that looked the other way than all around them
+  int k = 0;                         ///< neighbours of the support in force; 0 with a radius
+  double radius = 0.0;               ///< support radius in force, the median where it varies; 0 with k
+  RefinedNormals normals;            ///< what was done to the normals for the sake of sharp edges
   std::vector<SharpSurface::ConstPtr> sharp_surfaces; ///< the sharp edges that were found; not those given
   CollocationReport collocation;
   double spacing = 0.0; ///< typical distance between neighbouring points

@@ -42,7 +42,6 @@ sharpEdgesToJson (const CommandLine &line, const Report &report, double crease_l
 {
   return {{"given", line.options.field.sharp_surfaces.size ()},
           {"found", report.sharp_surfaces.size ()},
-          {"normals_turned", report.normals.turned},
           {"normals_sharpened", report.normals.sharpened},
           {"normals_smoothed", report.normals.smoothed},
           {"creases", report.creases.size ()},
@@ -87,6 +86,8 @@ writeReport (const CommandLine &line, const Report &report, double crease_length
                     {"no_confidence", report.points.no_confidence},
                     {"without_normal", report.points.without_normal}};
   json["orientation"] = nameOf (ORIENTATIONS, report.orientation);
+  json["normals_contradicted"] = report.normals_contradicted;
+  json["normals_turned"] = report.normals_turned;
   json["k"] = report.k;
   json["radius"] = report.radius;
   json["spacing"] = report.spacing;

@@ -113,6 +113,19 @@ private:
     tell ();
   }
 
+  void
+  tellNormals () const
+  {
+    const char *const how =
+        report_.orientation == Orientation::VIEW_POINT ? "towards the view point" : "from neighbour to neighbour";
+    if (report_.points.without_normal > 0)
+      print_info ("  estimated %zu normals, oriented %s\n", report_.points.without_normal, how);
+    else if (report_.normals_contradicted)
+      print_warn ("  neighbours had normals that look opposite ways: oriented anew, %s\n", how);
+    if (report_.normals_turned > 0)
+      print_info ("  turned %zu normals that looked the other way than all around them\n", report_.normals_turned);
+  }
+
   /** \brief What is worth knowing about the points and the mesh. */
   void
   tell () const
@@ -125,10 +138,7 @@ private:
                   points.duplicate);
     if (has_face_normals_)
       print_info ("  took the normals from the faces of the file\n");
-    const bool is_view_point = report_.orientation == Orientation::VIEW_POINT;
-    if (points.without_normal > 0)
-      print_info ("  estimated %zu normals, oriented %s\n", points.without_normal,
-                  is_view_point ? "towards the view point" : "from neighbour to neighbour");
+    tellNormals ();
     const CollocationReport &collocation = report_.collocation;
     if (collocation.unknowns > 0)
       print_info ("  collocation of %zu values: largest miss %g of the support radius\n", collocation.unknowns,
