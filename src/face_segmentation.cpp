@@ -248,7 +248,7 @@ segmentFaces (const OrientedPoints &points, const PointLayout &layout, const Seg
   for (int i = 0; i < n; ++i)
   {
     const auto root = static_cast<std::size_t> (sets.find (i));
-    if (numbers[root] < 0 && sizes[root] >= options.smallest)
+    if (numbers[root] < 0 && sizes[root] >= options.fewest)
       numbers[root] = result.count++;
     result.faces.push_back (numbers[root]);
   }

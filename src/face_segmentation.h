@@ -37,6 +37,7 @@ struct SegmentationOptions
   double separation_reach = 0; ///< how far nodes see each other across a crease or a wall, a length
   int ball = 64;               ///< nodes in which the faces around a node are told apart
   int smallest = 2;            ///< a face of fewer nodes within a ball is none
+  int fewest = 2;              ///< a face of fewer nodes in all is none: noise makes such out of nothing
 };
 
 /** \brief Sort the nodes into faces.

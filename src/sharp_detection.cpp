@@ -48,6 +48,7 @@ optionsFor (const OrientedPoints &points, const PointLayout &layout, double angl
       std::min (SIGMAS * positionNoise (*layout.search, options.spacing, threads, points), 1.2 * options.spacing);
   options.ball = static_cast<int> (NODES_PER_SUPPORT * k);
   options.smallest = 8;
+  options.fewest = CLEAN_SUPPORT; // fewer cannot average the noise of their normals out
   return options;
 }
 

@@ -12,6 +12,7 @@
 
 #include <cstdlib>
 #include <fstream>
+#include <sstream>
 #include <string>
 
 namespace
@@ -31,9 +32,29 @@ readPointsWithNormals (const std::string &path)
 {
   shapes::Samples samples;
   std::ifstream file (path);
-  for (Eigen::Vector3d p, n; file >> p[0] >> p[1] >> p[2] >> n[0] >> n[1] >> n[2];)
-    samples.add (p, n);
+  std::string line;
+  if (path.substr (path.rfind ('.')) == ".ply")
+    while (std::getline (file, line) && line.substr (0, 10) != "end_header")
+      continue;
+  while (std::getline (file, line)) // there may be more after the normal
+  {
+    std::istringstream numbers (line);
+    Eigen::Vector3d p, n;
+    if (numbers >> p[0] >> p[1] >> p[2] >> n[0] >> n[1] >> n[2])
+      samples.add (p, n);
+  }
   return samples;
+}
+
+/** \brief The mesh with the sharp edges that are found in the points. */
+pcl::PolygonMesh
+sharpMeshOf (const shapes::Samples &samples, erkpa::ERKPA<pcl::PointNormal> &stage)
+{
+  pcl::PolygonMesh mesh;
+  stage.setInputCloud (shapes::cloud<pcl::PointNormal> (samples));
+  stage.setAutomaticSharpEdges (true);
+  stage.reconstruct (mesh);
+  return mesh;
 }
 
 /** \brief Points at random, evenly by area, over the triangles of an OFF file, with the triangles' normals. */
@@ -96,6 +117,19 @@ TEST (PointSets, KittenIsClosedWithOneHandle)
   const erkpa::MeshTopology topology = erkpa::measureTopology (mesh);
   EXPECT_EQ (topology.components, 1u);
   EXPECT_EQ (topology.euler, 0);
+}
+
+TEST (PointSets, NoisySphereHasNoSharpEdges)
+{
+  const std::string path = pathOf ("ERKPA_CGAL_DATA", "points_3/sphere_20k_normal.xyz");
+  if (path.empty ())
+    GTEST_SKIP () << "needs points_3/sphere_20k_normal.xyz of libcgal-demo in ERKPA_CGAL_DATA";
+  erkpa::ERKPA<pcl::PointNormal> stage;
+  sharpMeshOf (readPointsWithNormals (path), stage);
+  EXPECT_TRUE (stage.getFoundSharpSurfaces ().empty ());
+  EXPECT_EQ (stage.getReport ().topology.boundary_edges, 0u);
+  EXPECT_EQ (stage.getReport ().topology.components, 1u);
+  EXPECT_EQ (stage.getReport ().topology.euler, 2);
 }
 
 TEST (PointSets, FandiskIsClosedAtAnyNumberOfSamples)
