@@ -281,7 +281,7 @@ runUnguarded (const pcl::PCLPointCloud2 &input, const Options &options, const Pr
     return outcome;
   reportPoints ("erkpa", *result.report, options);
   if (result.mesh != nullptr)
-    outcome = buildMesh (*field, options, *result.mesh, *result.report, partOf (progress, share, 1.0 - share));
+    outcome = buildMeshNearPoints (field, options, *result.mesh, *result.report, partOf (progress, share, 1.0 - share));
   if (outcome.ok () && result.mesh != nullptr)
     reportRounding ("erkpa", *field, *result.report);
   if (outcome.ok () && result.field != nullptr)

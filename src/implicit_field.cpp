@@ -59,6 +59,7 @@ ImplicitField::ImplicitField (std::shared_ptr<const OrientedPoints> points, Neig
     options_.order = options_.constraint == Constraint::FUNCTIONAL ? Order::LINEAR : Order::SPHERICAL;
   if (!layout)
     layout = std::make_shared<const PointLayout> (*points_, threads);
+  layout_ = layout;
   const double spacing = layout->spacing;
   grid_search_ = layout->search;
   if (options_.k == 0 && SupportSize::kindOf (*points_, options_) == SupportSize::Kind::NEAREST)
@@ -92,6 +93,12 @@ ImplicitField::ImplicitField (std::shared_ptr<const OrientedPoints> points, Neig
 }
 
 ImplicitField::~ImplicitField () = default;
+
+ImplicitField::ConstPtr
+ImplicitField::remade (const FieldOptions &options, int threads) const
+{
+  return std::make_shared<const ImplicitField> (points_, search_, options, threads, layout_);
+}
 
 void
 ImplicitField::warpPositions ()

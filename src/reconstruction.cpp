@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <erkpa/reconstruction.h>
 
+#include "flaps.h"
 #include "normal_flips.h"
 #include "stage_clock.h"
 #include "support.h"
@@ -219,6 +220,27 @@ buildMesh (const ImplicitField &field, const Options &options, TriangleMesh &mes
     splitNormals (mesh);
   report.vertices = mesh.vertices.size ();
   report.triangles = mesh.triangles.size ();
+  return outcome;
+}
+
+Outcome
+buildMeshNearPoints (ImplicitField::ConstPtr &field, const Options &options, TriangleMesh &mesh, Report &report,
+                     const ProgressCallback &progress)
+{
+  double shown = 0.0;
+  ProgressCallback never_back;
+  if (progress)
+    never_back = [&] (double done) { progress (shown = std::max (shown, done)); };
+  Outcome outcome = buildMesh (*field, options, mesh, report, never_back);
+  // Edges stand where the points are before a warp; values of nodes belong to the field they were found for.
+  if (report.sharp_surfaces.empty () || options.field.warp || field->hasNodeValues ())
+    return outcome;
+  for (const FlapEdges which : {FlapEdges::OF_FACE, FlapEdges::ALL, FlapEdges::SMALL_WHOLLY})
+  {
+    if (!outcome.ok () || !mendFlaps (options, mesh, which, report, field))
+      return outcome;
+    outcome = buildMesh (*field, options, mesh, report, never_back);
+  }
   return outcome;
 }
 

@@ -132,6 +132,18 @@ TEST (PointSets, NoisySphereHasNoSharpEdges)
   EXPECT_EQ (stage.getReport ().topology.euler, 2);
 }
 
+TEST (PointSets, BallIsClosedWithItsSharpEdgesFound)
+{
+  const std::string path = pathOf ("ERKPA_CGAL_DATA", "points_3/ball.ply");
+  if (path.empty ())
+    GTEST_SKIP () << "needs points_3/ball.ply of libcgal-demo in ERKPA_CGAL_DATA";
+  erkpa::ERKPA<pcl::PointNormal> stage;
+  sharpMeshOf (readPointsWithNormals (path), stage);
+  EXPECT_FALSE (stage.getFoundSharpSurfaces ().empty ());
+  EXPECT_EQ (stage.getReport ().topology.boundary_edges, 0u);
+  EXPECT_EQ (stage.getReport ().topology.components, 1u);
+}
+
 TEST (PointSets, FandiskIsClosedAtAnyNumberOfSamples)
 {
   const std::string path = pathOf ("ERKPA_CGAL_DATA", "meshes/fandisk.off");

@@ -533,6 +533,30 @@ TEST (SharpEdges, AreFoundWhereNormalsOfSinglePointsAreFlipped)
   EXPECT_GT (stage.getReport ().normals_turned, samples.size () / 25);
 }
 
+TEST (SharpEdges, LeaveTheMeshClosedWhereAFewWrongNormalsAlongAnEdgeLookLikeAFace)
+{
+  TurnedBox box (6000);
+  for (std::size_t i = 0; i < box.samples.size (); ++i)
+  {
+    const Vector3d p = box.rotation.transpose () * (box.samples.positions[i] - box.offset);
+    Vector3d &normal = box.samples.normals[i];
+    const bool is_on_top = normal.dot (box.rotation.col (2)) > 0.5;
+    if (is_on_top && std::abs (p[1]) < 0.5 * HALF[1] && p[0] > HALF[0] - 0.3 * box.spacing)
+      normal *= -1.0;
+  }
+  const SharpMesh result = automaticMeshOf (box.samples);
+  expectClosedBall (result);
+  double farthest = 0.0;
+  for (const Eigen::Vector3f &v : result.mesh.vertices)
+  {
+    const Vector3d q = (box.rotation.transpose () * (v.cast<double> () - box.offset)).cwiseAbs () - HALF;
+    farthest = std::max (farthest, q.cwiseMax (0.0).norm () + std::abs (std::min (0.0, q.maxCoeff ())));
+  }
+  EXPECT_LT (farthest, 1.5 * box.spacing) << "from the box";
+  for (const Vector3d &corner : shapes::boxEdgePoints (box.half, 1))
+    EXPECT_LT (distanceToVertices (result, box.at (corner)), EXACT) << "the other edges are as sharp as ever";
+}
+
 TEST (SharpEdges, HaveTheNormalsOfEachSideWhereTheyAreSplit)
 {
   const TurnedBox box (12000);

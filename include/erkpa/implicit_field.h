@@ -125,6 +125,13 @@ public:
                  const FieldOptions &options, int threads = 0, PointLayout::ConstPtr layout = nullptr);
   ~ImplicitField ();
 
+  /** \brief The field of the same nodes with other settings; their values are those of the constraint again.
+   * \param[in] options as for the constructor
+   * \param[in] threads for what is prepared; 0 = all processors
+   */
+  ConstPtr
+  remade (const FieldOptions &options, int threads = 0) const;
+
   /** \brief Tells whether the settings make sense, and which does not. */
   static Outcome
   checkOptions (const FieldOptions &options);
@@ -160,6 +167,13 @@ public:
   options () const
   {
     return options_;
+  }
+
+  /** \brief How the nodes lie in space. */
+  const PointLayout &
+  layout () const
+  {
+    return *layout_;
   }
 
   const NeighborSearch &
@@ -309,6 +323,7 @@ private:
 
   std::shared_ptr<const OrientedPoints> points_;
   NeighborSearch::ConstPtr search_;
+  PointLayout::ConstPtr layout_;
   FieldOptions options_;
   Kernel::ConstPtr kernel_;
   std::shared_ptr<const SupportSize> support_size_;

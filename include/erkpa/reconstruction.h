@@ -89,4 +89,13 @@ Outcome
 buildMesh (const ImplicitField &field, const Options &options, TriangleMesh &mesh, Report &report,
            const ProgressCallback &progress = {});
 
+/** \brief The same, but sharp edges that were found do not lead the mesh away from the points: where they would, they
+ * are taken out of \a field and of \a report, and the mesh is made anew.
+ * \param[in,out] field from buildField () with the same options
+ * \param[in,out] report from there
+ */
+Outcome
+buildMeshNearPoints (ImplicitField::ConstPtr &field, const Options &options, TriangleMesh &mesh, Report &report,
+                     const ProgressCallback &progress = {});
+
 } // namespace erkpa

@@ -91,7 +91,7 @@ ERKPA<PointNT>::makeMesh (TriangleMesh &mesh)
       {
         Outcome outcome = makeField (partOf (progress_, 0.0, share));
         if (outcome.ok ())
-          outcome = buildMesh (*field_, options_, mesh, report_, partOf (progress_, share, 1.0 - share));
+          outcome = buildMeshNearPoints (field_, options_, mesh, report_, partOf (progress_, share, 1.0 - share));
         if (outcome.ok ())
           reportRounding (getClassName (), *field_, report_);
         return outcome;
