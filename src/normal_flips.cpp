@@ -78,9 +78,9 @@ askAbout (const NeighborSearch &search, const OrientedPoints &points, const std:
 NormalSigns
 judgeSigns (const NeighborSearch &search, int threads, const OrientedPoints &points)
 {
-  constexpr int FEW = 2;                             // flipped ones in a sample
+  constexpr int FEW = 2;                              // flipped ones in a sample
   constexpr double MANY = 0.08, CONTRADICTING = 0.36; // of all neighbours: 4 % are flipped, 23 %
-  constexpr double ON_ONE_SIDE = 0.35;               // of the opposite ones: of walls nearly all are behind
+  constexpr double ON_ONE_SIDE = 0.35;                // of the opposite ones: of walls nearly all are behind
   Opinion sum;
   int flipped = 0;
   for (const Opinion &opinion : askAbout (search, points, spreadSample (points.size ()), NEIGHBORS, threads))

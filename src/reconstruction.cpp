@@ -181,6 +181,30 @@ prepareNormals (const PointLayout &layout, Options &options, OrientedPoints &poi
   return outcome.ok () && has_edges ? respectSharpEdges (layout, options, points, report) : outcome;
 }
 
+/** \brief The surface as a mesh whose vertices are joined along creases, measured. */
+Outcome
+meshField (const ImplicitField &field, const Options &options, TriangleMesh &mesh, Report &report,
+           const ProgressCallback &progress)
+{
+  const StageClock total (report.seconds_total), clock (report.seconds_polygonizer);
+  const Outcome outcome = polygonize (field, options.polygonizer, mesh, report.polygonizer, progress);
+  report.topology = measureTopology (mesh, options.polygonizer.threads);
+  return outcome;
+}
+
+/** \brief Split normals where that is asked for, and report what there is. */
+void
+finishMesh (const Options &options, TriangleMesh &mesh, Report &report)
+{
+  const StageClock total (report.seconds_total), clock (report.seconds_polygonizer);
+  report.creases = mesh.creases;
+  report.corners = findCorners (mesh.creases);
+  if (options.polygonizer.split_normals)
+    splitNormals (mesh);
+  report.vertices = mesh.vertices.size ();
+  report.triangles = mesh.triangles.size ();
+}
+
 } // namespace
 
 Outcome
@@ -210,16 +234,8 @@ buildMesh (const ImplicitField &field, const Options &options, TriangleMesh &mes
            const ProgressCallback &progress)
 {
   const LargePageKeeper keeper;
-  const StageClock total (report.seconds_total);
-  const StageClock clock (report.seconds_polygonizer);
-  Outcome outcome = polygonize (field, options.polygonizer, mesh, report.polygonizer, progress);
-  report.topology = measureTopology (mesh, options.polygonizer.threads);
-  report.creases = mesh.creases;
-  report.corners = findCorners (mesh.creases);
-  if (options.polygonizer.split_normals)
-    splitNormals (mesh);
-  report.vertices = mesh.vertices.size ();
-  report.triangles = mesh.triangles.size ();
+  const Outcome outcome = meshField (field, options, mesh, report, progress);
+  finishMesh (options, mesh, report);
   return outcome;
 }
 
@@ -227,20 +243,21 @@ Outcome
 buildMeshNearPoints (ImplicitField::ConstPtr &field, const Options &options, TriangleMesh &mesh, Report &report,
                      const ProgressCallback &progress)
 {
+  const LargePageKeeper keeper;
   double shown = 0.0;
   ProgressCallback never_back;
   if (progress)
     never_back = [&] (double done) { progress (shown = std::max (shown, done)); };
-  Outcome outcome = buildMesh (*field, options, mesh, report, never_back);
+  Outcome outcome = meshField (*field, options, mesh, report, never_back);
   // Edges stand where the points are before a warp; values of nodes belong to the field they were found for.
-  if (report.sharp_surfaces.empty () || options.field.warp || field->hasNodeValues ())
-    return outcome;
+  const bool has_edges = !report.sharp_surfaces.empty () && !options.field.warp && !field->hasNodeValues ();
   for (const FlapEdges which : {FlapEdges::OF_FACE, FlapEdges::ALL, FlapEdges::SMALL_WHOLLY})
   {
-    if (!outcome.ok () || !mendFlaps (options, mesh, which, report, field))
-      return outcome;
-    outcome = buildMesh (*field, options, mesh, report, never_back);
+    if (!outcome.ok () || !has_edges || !mendFlaps (options, mesh, which, report, field))
+      break;
+    outcome = meshField (*field, options, mesh, report, never_back);
   }
+  finishMesh (options, mesh, report);
   return outcome;
 }
 
