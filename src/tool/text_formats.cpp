@@ -33,19 +33,44 @@ setCount (pcl::PCLPointCloud2 &cloud, std::size_t count)
   cloud.height = 1;
 }
 
-/** \brief Rows x y z or x y z nx ny nz to the end of the text; the first row tells which. */
+/** \brief Whether the last three of six columns are colours, not normals: whole numbers of a byte, and not all of them
+ * 0 and 1. */
+bool
+endsWithColours (TextScanner ahead)
+{
+  constexpr int ROWS = 64; // that are looked at
+  Tokens tokens;
+  bool any_large = false;
+  for (int row = 0; row < ROWS && ahead.nextRow (tokens) && tokens.size () == 6; ++row)
+    for (std::size_t column = 3; column < 6; ++column)
+    {
+      const std::string_view token = tokens[column];
+      const auto is_digit = [] (char c) { return c >= '0' && c <= '9'; };
+      if (token.size () > 3 || !std::all_of (token.begin (), token.end (), is_digit) ||
+          std::stoi (std::string (token)) > 255)
+        return false;
+      any_large = any_large || token.size () > 1 || token[0] > '1';
+    }
+  return any_large;
+}
+
+/** \brief Rows x y z, x y z nx ny nz or x y z r g b to the end of the text; the first rows tell which. */
 void
 readTable (TextScanner &scanner, pcl::PCLPointCloud2 &cloud)
 {
   TextScanner ahead = scanner;
   Tokens tokens;
-  if (!ahead.nextRow (tokens))
-    return;
+  const bool is_empty = !ahead.nextRow (tokens);
+  appendFields (cloud, {"x", "y", "z"});
+  if (is_empty)
+    return; // the cloud says so itself
   if (tokens.size () != 3 && tokens.size () != 6)
     ahead.fail ("the row has " + std::to_string (tokens.size ()) +
-                " columns; give x y z, or x y z nx ny nz, on every line");
-  appendFields (cloud, {"x", "y", "z"});
-  if (tokens.size () == 6)
+                " columns; give x y z, x y z nx ny nz or x y z r g b on every line");
+  if (tokens.size () == 6 && endsWithColours (scanner))
+    for (const char *name : {"red", "green", "blue"})
+      appendField (cloud, name, Field::UINT8);
+  else if (tokens.size () == 6)
     appendFields (cloud, {"nx", "ny", "nz"});
   setCount (cloud, readRows (scanner, std::numeric_limits<std::size_t>::max (), cloud));
 }
@@ -67,9 +92,7 @@ readPwn (std::string_view bytes, const std::string &path)
   RawCloud result;
   TextScanner scanner (bytes, path), ahead = scanner;
   Tokens tokens;
-  if (!ahead.nextRow (tokens))
-    return result;
-  if (tokens.size () != 1)
+  if (!ahead.nextRow (tokens) || tokens.size () != 1)
   {
     readTable (scanner, result.cloud);
     return result;

@@ -13,10 +13,14 @@ namespace erkpa::tool
 class TextScanner
 {
 public:
-  /** \param[in] text must outlive the scanner and the tokens it gives
+  /** \param[in] text must outlive the scanner and the tokens it gives; may begin with a byte order mark (UTF-8)
    * \param[in] file named in errors
    */
-  TextScanner (std::string_view text, std::string file) : text_ (text), file_ (std::move (file)) {}
+  TextScanner (std::string_view text, std::string file) : text_ (text), file_ (std::move (file))
+  {
+    constexpr std::string_view MARK = "\xEF\xBB\xBF";
+    offset_ = text.substr (0, MARK.size ()) == MARK ? MARK.size () : 0;
+  }
 
   /** \brief Splits the next line that holds anything but blanks and comments (from # on).
    * \param[out] tokens what blanks, tabs and commas separate

@@ -16,6 +16,8 @@ TEST_F (ErkpaReconstruct, ReadsTablesOfText)
   expectReads ("sphere.xyz");
   write ("a.xyzn", "# a comment\n\n" + sphereRows (true, "\t", ",\t", " # another\r"));
   expectReads ("a.xyzn");
+  write ("a.xyzn", "\xEF\xBB\xBF" + sphereRows (true)); // as some editors begin a text
+  expectReads ("a.xyzn");
   write ("without_normals.XYZ", sphereRows (false));
   expectReads ("without_normals.XYZ");
   write ("a.pwn", sphereRows (true));
@@ -143,6 +145,22 @@ TEST_F (ErkpaReconstruct, ReadsColoursOfTextInBothScales)
     ASSERT_EQ (runCoarse (input + " out.ply").status, 0);
     for (const pcl::PointXYZRGB &vertex : loadVertices<pcl::PointXYZRGB> ("out.ply"))
       ASSERT_EQ (vertex.getRGBVector3i (), Eigen::Vector3i (255, 51, 0)) << input;
+  }
+}
+
+TEST_F (ErkpaReconstruct, TellsColoursFromNormalsInTablesOfText)
+{
+  std::string rows;
+  for (const Eigen::Vector3d &p : fibonacciSphere ())
+    rows += std::to_string (p.x ()) + " " + std::to_string (p.y ()) + " " + std::to_string (p.z ()) + " 200 7 0\n";
+  write ("colours.xyz", rows);
+  ASSERT_EQ (runCoarse ("colours.xyz colours.ply").status, 0);
+  pcl::PointCloud<pcl::PointXYZRGBNormal> coloured;
+  ASSERT_EQ (pcl::io::loadPLYFile (path ("colours.ply"), coloured), 0);
+  for (const auto &point : coloured)
+  {
+    ASSERT_EQ (point.getRGBVector3i (), Eigen::Vector3i (200, 7, 0));
+    ASSERT_GT (point.getNormalVector3fMap ().dot (point.getVector3fMap ()), 0.9f);
   }
 }
 
