@@ -21,8 +21,7 @@ bool
 BlockFaces::canEvaluate (const ImplicitField &field)
 {
   const FieldOptions &options = field.options ();
-  return field.supportSize ().kind () == SupportSize::Kind::NEAREST && options.order != Order::CONSTANT &&
-         options.flatten >= 1.0;
+  return options.order != Order::CONSTANT && options.flatten >= 1.0;
 }
 
 void

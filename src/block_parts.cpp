@@ -3,6 +3,7 @@
 
 #include "lane_settings.h"
 #include "support.h"
+#include "support_size.h"
 
 #include <algorithm>
 #include <numeric>
@@ -13,7 +14,8 @@ namespace erkpa
 BlockParts::BlockParts (const ImplicitField &field, const lanes::Engine &engine, const lanes::Settings &settings,
                         double unit)
     : field_ (field), engine_ (engine), settings_ (settings), unit_ (unit), groups_ (field.faces ()),
-      all_ (field, engine, unit), at_part_ (0, termsOf (settings.basis), true)
+      all_ (field, engine, unit), at_part_ (0, termsOf (settings.basis), true),
+      part_reach_ (field.supportSize ().kind () == SupportSize::Kind::NEAREST ? Support::PART_REACH : 1.0)
 {
 }
 
@@ -48,7 +50,7 @@ BlockParts::gatherNodes (const std::vector<std::uint32_t> &which, const BlockPoi
       continue;
     const auto away = static_cast<double> (points.position (point).norm ());
     const auto radius = static_cast<double> (points.radii[point]);
-    of_parts = std::max (of_parts, unit_ * (Support::PART_REACH * radius + away));
+    of_parts = std::max (of_parts, unit_ * (part_reach_ * radius + away));
     of_near = std::max (of_near, unit_ * (FaceGroups::REACH * radius + away));
   }
   if (of_parts <= reach_of_parts_ && of_near <= reach_of_near_)
@@ -173,10 +175,10 @@ BlockParts::fitGroup (const BlockPoints &points, std::uint64_t faces)
   for (std::size_t i = 0; i < parts_to_fit_.size (); ++i)
   {
     const std::size_t point = parts_[parts_to_fit_[i]].point;
-    const float radius = points.radii[point], limit = static_cast<float> (Support::PART_REACH) * radius;
+    const float radius = points.radii[point], limit = static_cast<float> (part_reach_) * radius;
     at_part_.setRadius (i, limit, radius);
     if (settings_.gradients)
-      at_part_.setGrowth (i, static_cast<float> (Support::PART_REACH) *
+      at_part_.setGrowth (i, static_cast<float> (part_reach_) *
                                  Eigen::Vector3f (points.radius_gradients[0][point], points.radius_gradients[1][point],
                                                   points.radius_gradients[2][point]));
   }

@@ -155,6 +155,7 @@ private:
   std::vector<std::uint32_t> places_;                 // among some nodes
   std::vector<int> near_;                             // those of near_faces_ last listed
   BlockPoints at_part_;
+  double part_reach_; // radius of a part's support, at most, in radii of the whole
   std::vector<Part> parts_;
   std::vector<std::uint32_t> parts_to_fit_; // those of one group
   std::size_t evaluations_ = 0, support_nodes_ = 0;

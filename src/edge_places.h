@@ -39,7 +39,7 @@ public:
   void
   clearAllAt (const Eigen::Vector3d &x, bool small_wholly);
 
-  /** \brief What is left of the edges, without those shorter than a length. */
+  /** \brief What is left of the edges; of those that lost places nothing where the rest is shorter than a length. */
   std::vector<SharpSurface::ConstPtr>
   rest (double shortest) const;
 

@@ -128,9 +128,12 @@ reportPoints (const std::string &class_name, const Report &report, const Options
   if (points.without_normal > 0)
     PCL_WARN ("[%s::reconstruct] %zu points have no usable normal: normals are estimated and oriented %s.\n",
               class_name.c_str (), points.without_normal, how.str ().c_str ());
-  else if (report.normals_contradicted)
+  if (report.normals_contradicted)
     PCL_WARN ("[%s::reconstruct] Normals of neighbours look opposite ways: they are oriented anew, %s.\n",
               class_name.c_str (), how.str ().c_str ());
+  if (report.normals_turned > 0)
+    PCL_WARN ("[%s::reconstruct] %zu normals look the other way than those around them: they are turned.\n",
+              class_name.c_str (), report.normals_turned);
 }
 
 void

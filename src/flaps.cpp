@@ -24,25 +24,35 @@ namespace
 
 using Positions = std::vector<Eigen::Vector3d>;
 
-/** \brief The vertices at the border of a mesh. */
-std::vector<char>
-markBorder (const TriangleMesh &mesh)
+/** \brief For the vertices at the border of a mesh the direction away from it; zero for others. */
+std::vector<Eigen::Vector3f>
+findOutwards (const TriangleMesh &mesh)
 {
-  std::vector<std::pair<int, int>> sides;
+  struct Side
+  {
+    std::pair<int, int> ends;
+    int across;
+  };
+  std::vector<Side> sides;
   sides.reserve (3 * mesh.triangles.size ());
   for (const auto &triangle : mesh.triangles)
     for (std::size_t c = 0; c < 3; ++c)
-      sides.push_back (std::minmax (triangle[c], triangle[(c + 1) % 3]));
-  std::sort (sides.begin (), sides.end ());
-  std::vector<char> marks (mesh.vertices.size (), 0);
+      sides.push_back ({std::minmax (triangle[c], triangle[(c + 1) % 3]), triangle[(c + 2) % 3]});
+  std::sort (sides.begin (), sides.end (), [] (const Side &one, const Side &other) { return one.ends < other.ends; });
+  std::vector<Eigen::Vector3f> outwards (mesh.vertices.size (), Eigen::Vector3f::Zero ());
+  const auto at = [&mesh] (int v) { return mesh.vertices[static_cast<std::size_t> (v)]; };
   for (std::size_t first = 0, last = 0; first < sides.size (); first = last)
   {
-    while (last < sides.size () && sides[last] == sides[first])
+    while (last < sides.size () && sides[last].ends == sides[first].ends)
       ++last;
+    const auto [a, b] = sides[first].ends;
     if (last - first == 1)
-      marks[static_cast<std::size_t> (sides[first].first)] = marks[static_cast<std::size_t> (sides[first].second)] = 1;
+      for (const int end : {a, b})
+        outwards[static_cast<std::size_t> (end)] += 0.5f * (at (a) + at (b)) - at (sides[first].across);
   }
-  return marks;
+  for (Eigen::Vector3f &outward : outwards)
+    outward.normalize (); // zeros stay
+  return outwards;
 }
 
 /** \brief Asks the surface without edges about places, in the local frame. */
@@ -69,7 +79,7 @@ public:
   goesOnAt (const Eigen::Vector3d &x)
   {
     constexpr int STEPS = 3;
-    constexpr double CLEARLY = 0.8; // of the limit
+    constexpr double CLEARLY = 0.5; // of the limit
     Eigen::Vector3d foot = x;
     LocalSample sample = sampleAt (foot);
     for (int step = 0; step < STEPS && sample.isDefined () && !sample.gradient.isZero (0.0); ++step)
@@ -100,7 +110,7 @@ public:
   FlapFinder (const ImplicitField &field, const Options &options, const TriangleMesh &mesh, const Report &report)
       : field_ (field), options_ (options), mesh_ (mesh), threads_ (options.polygonizer.threads),
         reach_ (REACH * std::max (field.spacing (), report.polygonizer.voxel_size)),
-        is_border_ (report.topology.boundary_edges > 0 ? markBorder (mesh) : std::vector<char> ())
+        outwards_ (report.topology.boundary_edges > 0 ? findOutwards (mesh) : std::vector<Eigen::Vector3f> ())
   {
   }
 
@@ -118,7 +128,7 @@ public:
         {
           const std::size_t v = candidates[c];
           const Eigen::Vector3d x = at (v) - field_.points ().origin;
-          is_flap[c] = (isFar (v) && surface.isOff (x)) || (isBorder (v) && surface.goesOnAt (x)) ? 1 : 0;
+          is_flap[c] = (isFar (v) && surface.isOff (x)) || (isBorder (v) && surface.goesOnAt (beyond (v))) ? 1 : 0;
         });
     Positions flaps;
     for (std::size_t c = 0; c < candidates.size (); ++c)
@@ -139,7 +149,14 @@ private:
   bool
   isBorder (std::size_t v) const
   {
-    return !is_border_.empty () && is_border_[v] != 0;
+    return !outwards_.empty () && !outwards_[v].isZero (0.0f);
+  }
+
+  /** \brief A place beyond the border, where data that end there end for the surface without edges, too. */
+  Eigen::Vector3d
+  beyond (std::size_t v) const
+  {
+    return at (v) - field_.points ().origin + 0.6 * reach_ * outwards_[v].cast<double> ();
   }
 
   bool
@@ -192,7 +209,7 @@ private:
   const TriangleMesh &mesh_;
   int threads_;
   double reach_;
-  std::vector<char> is_border_; // of the vertices; empty where the mesh is closed
+  std::vector<Eigen::Vector3f> outwards_; // of the vertices; empty where the mesh is closed
 };
 
 } // namespace

@@ -159,14 +159,17 @@ chooseSupportSizes (const OrientedPoints &points, const NeighborSearch &search, 
   const std::vector<SizesAtNode> nodes =
       measureSample (points.positions, search, 400, SIZES.back (), threads, SizesAtNode (),
                      [&] (const SortedNeighbors &neighbors) { return measureSizes (points, neighbors); });
-  const auto least = [&] (double most_tilt, double least_own)
+  const auto least = [&] (double most_tilt)
   {
     for (std::size_t i = 0; i + 1 < SIZES.size (); ++i)
-      if (medianOf (nodes, &SizesAtNode::tilts, i) <= most_tilt && medianOf (nodes, &SizesAtNode::own, i) >= least_own)
+      if (static_cast<std::size_t> (SIZES[i + 1]) > points.size ()) // nobody has so many neighbours
+        return SIZES[i];
+      else if (medianOf (nodes, &SizesAtNode::tilts, i) <= most_tilt &&
+               medianOf (nodes, &SizesAtNode::own, i) >= LEAST_OWN * CLEAN_SUPPORT)
         return SIZES[i];
     return SIZES.back ();
   };
-  return {least (TILT, 0.0), least (WITHIN_FACES, LEAST_OWN * CLEAN_SUPPORT)};
+  return {least (TILT), least (WITHIN_FACES)};
 }
 
 } // namespace erkpa

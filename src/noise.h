@@ -28,8 +28,8 @@ struct SupportSizes
  * The noise is the thickness of small neighbourhoods: the standard deviation of the 10 nearest nodes along their
  * thinnest direction, but for those whose normals look the other way: the far sides of thin walls. A fit to k nodes
  * within r tilts by about noise / (r sqrt k). Takes the smallest k, from CLEAN_SUPPORT on, for which this is below 0.01
- * in the median, or 0.0085 within faces; there most of CLEAN_SUPPORT must be on the node's own side of a wall, too. It
- * does not depend on the number of threads.
+ * in the median, or 0.0085 within faces, and most of CLEAN_SUPPORT are on the node's own side of a wall. It does not
+ * depend on the number of threads.
  */
 SupportSizes
 chooseSupportSizes (const OrientedPoints &points, const NeighborSearch &search, int threads);

@@ -21,16 +21,44 @@ constexpr int NEIGHBORS = 12;
 /** \brief What the neighbours of a point make of its normal. */
 struct Opinion
 {
-  int with = 0, against = 0;   ///< of those on its level
-  int alike = 0, opposite = 0; ///< of all
-  int before = 0, behind = 0;  ///< where those lie that are opposite
+  int with = 0, against = 0;                                             ///< of those on its level
+  int alike = 0, opposite = 0;                                           ///< of all
+  int before = 0, behind = 0;                                            ///< where those lie that are opposite
+  float squares = 0.0f, fourths = 0.0f, heights = 0.0f, products = 0.0f; ///< of opposite ones: d², d⁴, h and h d²
+
+  void
+  addOpposite (float squared, float height)
+  {
+    ++opposite;
+    before += height > 0.0f ? 1 : 0;
+    behind += height < 0.0f ? 1 : 0;
+    squares += squared;
+    fourths += squared * squared;
+    heights += height;
+    products += height * squared;
+  }
+
+  /** \brief Whether the opposite neighbours are the other side of a wall: on curved surfaces heights grow with squared
+   * distances, from 0 at the point itself, there from the thickness of the wall. */
+  bool
+  isWall () const
+  {
+    constexpr float THICK = 0.08f; // of their mean distance
+    const auto count = static_cast<float> (opposite);
+    const float spread = count * fourths - squares * squares;
+    const float at_point =
+        spread > 0.0f ? (heights * fourths - products * squares) / spread : heights / std::max (count, 1.0f);
+    return at_point < -THICK * std::sqrt (squares / std::max (count, 1.0f));
+  }
 
   /** \brief Whether it looks the other way than nearly all of its neighbours, or than most of them. */
   bool
   isFlipped (NormalSigns signs) const
   {
-    constexpr int FEWEST = 6, AGAINST_ONE = 4; // neighbours that speak against the normal
-    return signs == NormalSigns::MANY_FLIPPED ? against > with : against >= FEWEST && against > AGAINST_ONE * with;
+    constexpr int FEWEST = 6, FEWEST_OF_MANY = 4, AGAINST_ONE = 4; // neighbours that speak against the normal
+    const bool is_outvoted = signs == NormalSigns::MANY_FLIPPED ? against >= FEWEST_OF_MANY && against > with
+                                                                : against >= FEWEST && against > AGAINST_ONE * with;
+    return is_outvoted && !isWall ();
   }
 };
 
@@ -52,9 +80,10 @@ askNeighbors (const NeighborSearch &search, const OrientedPoints &points, std::s
     const bool is_opposite = turn < 0.0f;
     const Eigen::Vector3f d = points.positions[j] - position;
     const float height = d.dot (normal);
-    ++(is_opposite ? opinion.opposite : opinion.alike);
-    opinion.before += is_opposite && height > 0.0f ? 1 : 0;
-    opinion.behind += is_opposite && height < 0.0f ? 1 : 0;
+    if (is_opposite)
+      opinion.addOpposite (d.squaredNorm (), height);
+    else
+      ++opinion.alike;
     if (std::abs (height) <= LEVEL * d.norm ())
       ++(is_opposite ? opinion.against : opinion.with);
   }
@@ -75,6 +104,38 @@ askAbout (const NeighborSearch &search, const OrientedPoints &points, const std:
 
 } // namespace
 
+namespace
+{
+
+/** \brief A sample of all points, at no fixed stride: clouds have rows. */
+std::vector<std::size_t>
+scatteredSample (std::size_t size)
+{
+  std::vector<std::size_t> sample = spreadSample (size);
+  for (std::size_t s = 0; s + 1 < sample.size (); ++s)
+    sample[s] += s * 2654435761u % (sample[s + 1] - sample[s]);
+  return sample;
+}
+
+/** \brief The points whose normals a turn of some others' may outvote: these and their neighbours. */
+std::vector<std::size_t>
+neighborsOf (const NeighborSearch &search, const OrientedPoints &points, const std::vector<std::size_t> &turned,
+             int neighbors)
+{
+  std::vector<std::size_t> near = turned;
+  FoundNodes found;
+  for (const std::size_t i : turned)
+  {
+    search.nearestK (points.positions[i], neighbors + 1, found.nodes, found.squared);
+    near.insert (near.end (), found.nodes.begin (), found.nodes.end ());
+  }
+  std::sort (near.begin (), near.end ());
+  near.erase (std::unique (near.begin (), near.end ()), near.end ());
+  return near;
+}
+
+} // namespace
+
 NormalSigns
 judgeSigns (const NeighborSearch &search, int threads, const OrientedPoints &points)
 {
@@ -83,7 +144,7 @@ judgeSigns (const NeighborSearch &search, int threads, const OrientedPoints &poi
   constexpr double ON_ONE_SIDE = 0.35;                // of the opposite ones: of walls nearly all are behind
   Opinion sum;
   int flipped = 0;
-  for (const Opinion &opinion : askAbout (search, points, spreadSample (points.size ()), NEIGHBORS, threads))
+  for (const Opinion &opinion : askAbout (search, points, scatteredSample (points.size ()), NEIGHBORS, threads))
   {
     flipped += opinion.isFlipped (NormalSigns::SINGLE_ONES_FLIPPED) ? 1 : 0;
     sum.alike += opinion.alike;
@@ -104,23 +165,22 @@ turnFlippedNormals (const NeighborSearch &search, NormalSigns signs, int threads
   constexpr int PASSES = 8; // most are right after the first, the others where several are together
   std::vector<std::size_t> nodes (points.size ());
   std::iota (nodes.begin (), nodes.end (), std::size_t (0));
-  const std::vector<Eigen::Vector3f> before = points.normals;
-  bool is_done = false;
-  for (int pass = 0; pass < PASSES && !is_done; ++pass)
+  std::vector<char> is_turned (points.size (), 0);
+  for (int pass = 0; pass < PASSES && !nodes.empty (); ++pass)
   {
     const std::vector<Opinion> opinions = askAbout (search, points, nodes, neighbors, threads);
-    is_done = true;
+    std::vector<std::size_t> turned;
     for (std::size_t i = 0; i < nodes.size (); ++i)
       if (opinions[i].isFlipped (signs))
-      {
-        points.normals[i] = -points.normals[i];
-        is_done = false;
-      }
+        turned.push_back (nodes[i]);
+    for (const std::size_t i : turned)
+    {
+      points.normals[i] = -points.normals[i];
+      is_turned[i] ^= 1;
+    }
+    nodes = neighborsOf (search, points, turned, neighbors);
   }
-  std::size_t turned = 0;
-  for (std::size_t i = 0; i < nodes.size (); ++i)
-    turned += points.normals[i].dot (before[i]) < 0.0f ? 1 : 0;
-  return turned;
+  return static_cast<std::size_t> (std::count (is_turned.begin (), is_turned.end (), 1));
 }
 
 } // namespace erkpa

@@ -65,10 +65,19 @@ estimateNormals (OrientedPoints &points, const PointLayout &layout, const Normal
 Orientation
 reorientNormals (OrientedPoints &points, const PointLayout &layout, const NormalOptions &options)
 {
+  constexpr double MOST = 0.6; // of the normals: then they know the side better
   std::vector<Eigen::Vector3f> normals (points.size (), Eigen::Vector3f::Zero ());
   normals.swap (points.normals); // as if none were given
-  const Orientation orientation = orientNormals (points, *layout.search, layout.k, options, normals);
+  const std::vector<Eigen::Vector3f> given = normals;
+  const int k = options.k > 0 ? options.k : layout.k;
+  const Orientation orientation = orientNormals (points, *layout.search, k, options, normals);
   points.normals.swap (normals);
+  std::size_t against = 0;
+  for (std::size_t i = 0; i < points.size (); ++i)
+    against += points.normals[i].dot (given[i]) < 0.0f ? 1 : 0;
+  if (static_cast<double> (against) > MOST * static_cast<double> (points.size ()))
+    for (Eigen::Vector3f &normal : points.normals)
+      normal = -normal;
   return orientation;
 }
 

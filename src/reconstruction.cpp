@@ -161,6 +161,8 @@ completeNormals (const PointLayout &layout, const Options &options, OrientedPoin
     if (!outcome.ok ())
       return outcome;
   }
+  if (!options.normals.sharpen) // normals stay as they are
+    return {};
   const int threads = options.polygonizer.threads;
   const NormalSigns signs = judgeSigns (*layout.search, threads, points);
   report.normals_contradicted = signs == NormalSigns::CONTRADICT;
@@ -173,12 +175,14 @@ completeNormals (const PointLayout &layout, const Options &options, OrientedPoin
 
 /** \brief Have normals everywhere that respect sharp edges. */
 Outcome
-prepareNormals (const PointLayout &layout, Options &options, OrientedPoints &points, Report &report)
+prepareNormals (PointLayout::ConstPtr &layout, Options &options, OrientedPoints &points, Report &report)
 {
   const bool has_edges =
       options.sharp.automatic || !options.sharp.faces.empty () || !options.field.sharp_surfaces.empty ();
-  const Outcome outcome = completeNormals (layout, options, points, report);
-  return outcome.ok () && has_edges ? respectSharpEdges (layout, options, points, report) : outcome;
+  const Outcome outcome = completeNormals (*layout, options, points, report);
+  if (report.normals_contradicted || report.normals_turned > 0) // which normals look the same way decides on supports
+    layout = std::make_shared<const PointLayout> (points, options.polygonizer.threads);
+  return outcome.ok () && has_edges ? respectSharpEdges (*layout, options, points, report) : outcome;
 }
 
 /** \brief The surface as a mesh whose vertices are joined along creases, measured. */
@@ -225,7 +229,7 @@ buildField (const PointView &view, const Options &options, const SearchFactory &
   if (!outcome.ok ())
     return outcome;
   Options complete = options;
-  outcome = prepareNormals (*layout, complete, *points, report);
+  outcome = prepareNormals (layout, complete, *points, report);
   return outcome.ok () ? makeField (points, search, layout, complete, field, report, progress) : outcome;
 }
 
@@ -249,13 +253,28 @@ buildMeshNearPoints (ImplicitField::ConstPtr &field, const Options &options, Tri
   if (progress)
     never_back = [&] (double done) { progress (shown = std::max (shown, done)); };
   Outcome outcome = meshField (*field, options, mesh, report, never_back);
-  // Edges stand where the points are before a warp; values of nodes belong to the field they were found for.
-  const bool has_edges = !report.sharp_surfaces.empty () && !options.field.warp && !field->hasNodeValues ();
+  // Edges stand where the points are before a warp; values of nodes belong to the field they were found for; and other
+  // levels are away from the points anyway.
+  const bool can_mend = !report.sharp_surfaces.empty () && !options.field.warp && !field->hasNodeValues () &&
+                        options.polygonizer.iso_level == 0.0;
   for (const FlapEdges which : {FlapEdges::OF_FACE, FlapEdges::ALL, FlapEdges::SMALL_WHOLLY})
   {
-    if (!outcome.ok () || !has_edges || !mendFlaps (options, mesh, which, report, field))
+    if (!outcome.ok () || !can_mend)
       break;
-    outcome = meshField (*field, options, mesh, report, never_back);
+    const ImplicitField::ConstPtr field_before = field;
+    const Report report_before = report;
+    if (!mendFlaps (options, mesh, which, report, field))
+      break;
+    TriangleMesh mended;
+    const Outcome again = meshField (*field, options, mended, report, never_back);
+    if (again.ok () && report.topology.boundary_edges <= report_before.topology.boundary_edges)
+    {
+      std::swap (mesh, mended);
+      continue;
+    }
+    field = field_before; // that was no better
+    report = report_before;
+    break;
   }
   finishMesh (options, mesh, report);
   return outcome;

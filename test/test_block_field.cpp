@@ -321,7 +321,7 @@ TEST_F (BlockFieldTest, AgreesWithTheDefinitionInABallOfManySupports)
 
 /** \brief A box with the faces that are found on it; its points are denser where x is small. */
 std::shared_ptr<erkpa::ImplicitField>
-boxWithFaces (Order order)
+boxWithFaces (Order order, double radius = 0.0)
 {
   const Vector3d half (0.5, 0.35, 0.25);
   shapes::Samples samples = shapes::box (6000, half);
@@ -331,6 +331,7 @@ boxWithFaces (Order order)
       samples.add (more.positions[i], more.normals[i]);
   const auto points = shapes::points (samples);
   FieldOptions options = optionsOf (order, 20);
+  options.radius = radius; // 0: by the nearest nodes
   EXPECT_TRUE (erkpa::findSharpSurfaces (*points, erkpa::PointLayout (*points, 0), erkpa::SharpOptions (), 0,
                                          options.sharp_surfaces)
                    .ok ());
@@ -375,9 +376,10 @@ TEST_F (BlockFieldTest, AgreesWithTheDefinitionWhereTheDensityOfThePointsJumps)
 /** \brief Around edges and corners values come from two and three faces, and walls are thickened. */
 TEST_F (BlockFieldTest, AgreesWithTheDefinitionWhereFacesMeet)
 {
-  for (const Order order : {Order::LINEAR, Order::SPHERICAL, Order::QUADRATIC})
+  for (const auto &[order, radius] : {std::pair{Order::LINEAR, 0.0}, std::pair{Order::SPHERICAL, 0.0},
+                                      std::pair{Order::QUADRATIC, 0.0}, std::pair{Order::SPHERICAL, 0.06}})
   {
-    const auto field = boxWithFaces (order);
+    const auto field = boxWithFaces (order, radius);
     const double spacing = field->spacing (), least_wall = 1.2 * spacing;
     for (const erkpa::lanes::Engine *engine : allEngines ())
     {
@@ -412,11 +414,13 @@ TEST_F (BlockFieldTest, AgreesWithTheDefinitionWhereFacesMeet)
 /** \brief The piece of f of every face goes on beyond its edges, as far as its nodes reach. */
 TEST_F (BlockFieldTest, AgreesWithTheDefinitionOnTheSidesOfCreases)
 {
-  const auto field = boxWithFaces (Order::SPHERICAL);
-  const double spacing = field->spacing ();
-  for (const LocalField::Slope slope : {LocalField::Slope::EXACT, LocalField::Slope::OF_THE_FIT})
+  const auto by_nearest = boxWithFaces (Order::SPHERICAL), by_radius = boxWithFaces (Order::SPHERICAL, 0.06);
+  for (const auto &[field, slope] :
+       {std::pair{by_nearest, LocalField::Slope::EXACT}, std::pair{by_nearest, LocalField::Slope::OF_THE_FIT},
+        std::pair{by_radius, LocalField::Slope::EXACT}})
     for (const erkpa::lanes::Engine *engine : allEngines ())
     {
+      const double spacing = field->spacing ();
       BlockField block (*field, *engine);
       LocalField local (*field);
       int compared = 0, undefined = 0;

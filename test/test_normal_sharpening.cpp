@@ -215,17 +215,54 @@ TEST (NormalFlips, AreTurnedWhateverTheirShare)
     }
 }
 
+/** \brief Two sheets of unequal density, a distance apart, with their normals away from each other. */
+shapes::Samples
+unequalSheets (double thickness, int above, int below)
+{
+  shapes::Samples sheets;
+  std::mt19937 random (3);
+  std::uniform_real_distribution<double> unit (-1.0, 1.0);
+  for (int i = 0; i < above + below; ++i)
+  {
+    const double side = i < above ? 1.0 : -1.0, x = unit (random), y = unit (random);
+    sheets.add ({x, y, 0.5 * side * thickness}, {0.0, 0.0, side});
+  }
+  return sheets;
+}
+
 TEST (NormalFlips, AreNotTheOtherSidesOfThinWalls)
 {
-  for (const double thickness : {0.02, 0.01}) // 0.6 and 0.3 of the spacing
-  {
-    const shapes::Samples plate = shapes::box (6000, {1.0, 1.0, 0.5 * thickness});
-    OrientedPoints points = *shapes::points (plate);
-    EXPECT_EQ (settleSigns (points), erkpa::NormalSigns::AGREE) << thickness;
-    points = flipped (plate, 0.03);
-    settleSigns (points);
-    EXPECT_LE (countWrong (points, plate), plate.size () / 25) << thickness << ", none more at least";
-  }
+  constexpr double SPACING = 2.0 / 77.0; // 6000 points on 2 x 2
+  for (const double thickness : {0.6, 0.3, 0.15})
+    for (const int below : {6000, 1500, 300})
+    {
+      const shapes::Samples sheets = unequalSheets (thickness * SPACING, 6000, below);
+      OrientedPoints points = *shapes::points (sheets);
+      settleSigns (points);
+      EXPECT_LE (countWrong (points, sheets), sheets.size () / 500) << thickness << " spacings, " << below << " points below";
+    }
+}
+
+TEST (NormalFlips, AreTurnedOnASphereBesideAThinPlateThatIsLetBe)
+{
+  shapes::Samples both = shapes::sphere (8000);
+  const shapes::Samples plate = unequalSheets (0.3 * 2.0 / std::sqrt (500.0), 500, 500);
+  for (std::size_t i = 0; i < plate.size (); ++i)
+    both.add (0.3 * plate.positions[i] + Vector3d (2.0, 0.0, 0.0), plate.normals[i]);
+  OrientedPoints points = flipped (both, 0.08);
+  const std::size_t wrong = countWrong (points, both);
+  settleSigns (points);
+  EXPECT_LT (countWrong (points, both), wrong / 4);
+}
+
+TEST (NormalFlips, DoNotTurnASurfaceThatMostNormalsGiveTheOtherWay)
+{
+  shapes::Samples room = shapes::sphere (4000);
+  for (Vector3d &normal : room.normals)
+    normal = -normal;
+  OrientedPoints points = flipped (room, 0.3);
+  EXPECT_EQ (settleSigns (points), erkpa::NormalSigns::CONTRADICT);
+  EXPECT_LE (countWrong (points, room), room.size () / 500);
 }
 
 TEST (NormalSmoothing, TakesRandomErrorsOffAndKnowsTheirSize)
@@ -271,6 +308,6 @@ TEST (PointLayout, TakesMoreNeighborsAgainstNoiseWhereFacesAreFittedApart)
 TEST (PointLayout, TakesNoOtherSideOfAThinWallForNoise)
 {
   const erkpa::PointLayout layout (*shapes::points (shapes::box (8000, {1.0, 0.7, 0.008})), 0);
-  EXPECT_EQ (layout.k, erkpa::CLEAN_SUPPORT);
-  EXPECT_LE (layout.k_within_faces, 2 * erkpa::CLEAN_SUPPORT); // as many on each side
+  EXPECT_LE (layout.k, 2 * erkpa::CLEAN_SUPPORT); // as many on each side
+  EXPECT_LE (layout.k_within_faces, 2 * erkpa::CLEAN_SUPPORT);
 }

@@ -610,3 +610,49 @@ TEST (SharpEdges, AreInForceInTheirExtentOnly)
   EXPECT_LT (distanceToCreases (result, box.at ({0.5, HALF[1], HALF[2]})), EXACT);
   EXPECT_GT (distanceToCreases (result, box.at ({-0.5, HALF[1], HALF[2]})), 0.3);
 }
+
+/** \brief Where data end, so do the surface without edges and the crease; nothing runs into empty space there. */
+TEST (SharpEdges, ReachTheBorderOfTwoOpenFaces)
+{
+  constexpr double SPACING = 0.025;
+  std::mt19937 random (4);
+  std::uniform_real_distribution<double> unit (0.0, 1.0);
+  shapes::Samples roof;
+  for (int i = 0; i < static_cast<int> (2.0 / (SPACING * SPACING)); ++i)
+    if (i % 2 == 0)
+      roof.add ({unit (random), unit (random), 0.0}, Vector3d::UnitZ ());
+    else
+      roof.add ({unit (random), 0.0, -unit (random)}, -Vector3d::UnitY ());
+  const Eigen::Matrix3d turn = Eigen::AngleAxisd (0.5, Vector3d (0.3, 1.0, 0.5).normalized ()).toRotationMatrix ();
+  const SharpMesh result = automaticMeshOf (roof.moved (turn, 1.0, Vector3d::Zero ()));
+  EXPECT_MESH_CONTRACT (result.mesh, false);
+  ASSERT_EQ (result.creases.size (), 1u);
+  Eigen::AlignedBox1d along;
+  for (const int v : result.creases.front ().vertices)
+    along.extend (Eigen::Matrix<double, 1, 1> (turn.col (0).dot (result.at (v))));
+  EXPECT_LT (along.min ()[0], 2.0 * SPACING);
+  EXPECT_GT (along.max ()[0], 1.0 - 2.0 * SPACING);
+  double farthest = 0.0;
+  for (const Eigen::Vector3f &v : result.mesh.vertices)
+  {
+    const Vector3d p = turn.transpose () * v.cast<double> ();
+    farthest = std::max (farthest, std::min (std::abs (p[2]), std::abs (p[1])));
+  }
+  EXPECT_LT (farthest, 0.25 * SPACING) << "from both faces";
+}
+
+TEST (SharpEdges, StayOnSurfacesAtADistanceFromThePoints)
+{
+  const TurnedBox box (6000);
+  Stage stage;
+  stage.setInputCloud (shapes::cloud<pcl::PointNormal> (box.samples));
+  stage.setAutomaticSharpEdges (true);
+  stage.setIsoLevel (2.0 * box.spacing);
+  const SharpMesh result = meshOf (stage);
+  EXPECT_EQ (stage.getReport ().topology.euler, 2);
+  double length = 0.0;
+  for (const erkpa::Crease &crease : result.creases)
+    for (std::size_t i = 0; i + 1 < crease.vertices.size (); ++i)
+      length += (result.at (crease.vertices[i + 1]) - result.at (crease.vertices[i])).norm ();
+  EXPECT_GT (length, 0.9 * 8.0 * box.half.sum ());
+}

@@ -62,7 +62,8 @@ public:
   void
   reconstruct (PointCloud &points, std::vector<pcl::Vertices> &polygons) override;
 
-  /** \brief Only the field, for queries: no mesh is made. Null on failure, which getStatus () explains. */
+  /** \brief Only the field, for queries: no mesh is made, nor looked through for sharp edges found in vain, which
+   * reconstruct () takes out. Null on failure, which getStatus () explains. */
   ImplicitField::ConstPtr
   computeField ();
 

@@ -13,14 +13,14 @@ struct NormalOptions
   int k = 0;                                             ///< neighbours of the plane fit; 0 = chosen from the noise
   bool has_view_point = false;                           ///< whether the sensor's position is known
   Eigen::Vector3d view_point = Eigen::Vector3d::Zero (); ///< the sensor's position in the cloud's frame
-  bool sharpen = true; ///< where sharp edges are known or sought: see refineNormals ()
+  bool sharpen = true; ///< mend signs and, where sharp edges are known or sought, refineNormals (); else as given
   int threads = 0;     ///< 0 = all processors
 };
 
 /** \brief How normals got their sign that are estimated, or were given without one. */
 enum class Orientation
 {
-  NONE,       ///< they were given, and keep their signs
+  NONE,       ///< they were given, and none but single ones were turned
   VIEW_POINT, ///< towards the view point
   PROPAGATION ///< at least in part from neighbour to neighbour, outwards: the view point is unknown or cannot
               ///< have seen the surface
@@ -33,7 +33,8 @@ Outcome
 estimateNormals (OrientedPoints &points, const PointLayout &layout, const NormalOptions &options,
                  Orientation &orientation);
 
-/** \brief Give the normals, which point nowhere in particular, their signs, as estimateNormals () does. */
+/** \brief Give the normals, which point nowhere in particular, their signs, as estimateNormals () does; but turn all of
+ * them where most were given the other way round. */
 Orientation
 reorientNormals (OrientedPoints &points, const PointLayout &layout, const NormalOptions &options);
 

@@ -39,7 +39,7 @@ struct Report
   PointCounts points;
   Orientation orientation = Orientation::NONE;
   bool normals_contradicted = false; ///< neighbours looked opposite ways: they were oriented as if none had a sign
-  std::size_t normals_turned = 0;    ///< of single points that looked the other way than all around them
+  std::size_t normals_turned = 0;    ///< that looked the other way than those around them
   int k = 0;                         ///< neighbours of the support in force; 0 with a radius
   double radius = 0.0;               ///< support radius in force, the median where it varies; 0 with k
   RefinedNormals normals;            ///< what was done to the normals for the sake of sharp edges

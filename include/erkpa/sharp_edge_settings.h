@@ -158,8 +158,9 @@ public:
     return options_.sharp.angle;
   }
 
-  /** \brief Where sharp edges are known or sought: turn normals of single points that look the other way than all
-   * around them, and make normals those of one face each, see refineNormals (); true by default. */
+  /** \brief Turn normals that look the other way than those around them, orient those that contradict each other, and,
+   * where sharp edges are known or sought, make normals those of one face each, see refineNormals (); true by default.
+   * Else they are taken as they are given. */
   void
   setSharpenNormals (bool sharpen)
   {

@@ -120,10 +120,10 @@ private:
         report_.orientation == Orientation::VIEW_POINT ? "towards the view point" : "from neighbour to neighbour";
     if (report_.points.without_normal > 0)
       print_info ("  estimated %zu normals, oriented %s\n", report_.points.without_normal, how);
-    else if (report_.normals_contradicted)
+    if (report_.normals_contradicted)
       print_warn ("  neighbours had normals that look opposite ways: oriented anew, %s\n", how);
     if (report_.normals_turned > 0)
-      print_info ("  turned %zu normals that looked the other way than all around them\n", report_.normals_turned);
+      print_info ("  turned %zu normals that looked the other way than those around them\n", report_.normals_turned);
   }
 
   /** \brief What is worth knowing about the points and the mesh. */
