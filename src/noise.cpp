@@ -162,11 +162,12 @@ chooseSupportSizes (const OrientedPoints &points, const NeighborSearch &search, 
   const auto least = [&] (double most_tilt)
   {
     for (std::size_t i = 0; i + 1 < SIZES.size (); ++i)
-      if (static_cast<std::size_t> (SIZES[i + 1]) > points.size ()) // nobody has so many neighbours
+    {
+      const bool has_next = static_cast<std::size_t> (SIZES[i + 1]) <= points.size (); // that nodes have neighbours for
+      if (!has_next || (medianOf (nodes, &SizesAtNode::tilts, i) <= most_tilt &&
+                        medianOf (nodes, &SizesAtNode::own, i) >= LEAST_OWN * CLEAN_SUPPORT))
         return SIZES[i];
-      else if (medianOf (nodes, &SizesAtNode::tilts, i) <= most_tilt &&
-               medianOf (nodes, &SizesAtNode::own, i) >= LEAST_OWN * CLEAN_SUPPORT)
-        return SIZES[i];
+    }
     return SIZES.back ();
   };
   return {least (TILT), least (WITHIN_FACES)};

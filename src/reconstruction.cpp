@@ -157,7 +157,7 @@ completeNormals (const PointLayout &layout, const Options &options, OrientedPoin
   const StageClock clock (report.seconds_normals);
   if (report.points.without_normal > 0)
   {
-    const Outcome outcome = estimateNormals (points, layout, options.normals, report.orientation);
+    Outcome outcome = estimateNormals (points, layout, options.normals, report.orientation);
     if (!outcome.ok ())
       return outcome;
   }
@@ -179,7 +179,7 @@ prepareNormals (PointLayout::ConstPtr &layout, Options &options, OrientedPoints 
 {
   const bool has_edges =
       options.sharp.automatic || !options.sharp.faces.empty () || !options.field.sharp_surfaces.empty ();
-  const Outcome outcome = completeNormals (*layout, options, points, report);
+  Outcome outcome = completeNormals (*layout, options, points, report);
   if (report.normals_contradicted || report.normals_turned > 0) // which normals look the same way decides on supports
     layout = std::make_shared<const PointLayout> (points, options.polygonizer.threads);
   return outcome.ok () && has_edges ? respectSharpEdges (*layout, options, points, report) : outcome;
@@ -191,9 +191,32 @@ meshField (const ImplicitField &field, const Options &options, TriangleMesh &mes
            const ProgressCallback &progress)
 {
   const StageClock total (report.seconds_total), clock (report.seconds_polygonizer);
-  const Outcome outcome = polygonize (field, options.polygonizer, mesh, report.polygonizer, progress);
+  Outcome outcome = polygonize (field, options.polygonizer, mesh, report.polygonizer, progress);
   report.topology = measureTopology (mesh, options.polygonizer.threads);
   return outcome;
+}
+
+/** \brief Make the mesh anew without the edges that lead it into empty space.
+ * \return false, and all is as before, where there are none, or it is no better
+ */
+bool
+mendMesh (const Options &options, FlapEdges which, const ProgressCallback &progress, ImplicitField::ConstPtr &field,
+          TriangleMesh &mesh, Report &report)
+{
+  const ImplicitField::ConstPtr field_before = field;
+  const Report report_before = report;
+  if (!mendFlaps (options, mesh, which, report, field))
+    return false;
+  TriangleMesh mended;
+  const Outcome outcome = meshField (*field, options, mended, report, progress);
+  if (outcome.ok () && report.topology.boundary_edges <= report_before.topology.boundary_edges)
+  {
+    std::swap (mesh, mended);
+    return true;
+  }
+  field = field_before;
+  report = report_before;
+  return false;
 }
 
 /** \brief Split normals where that is asked for, and report what there is. */
@@ -238,7 +261,7 @@ buildMesh (const ImplicitField &field, const Options &options, TriangleMesh &mes
            const ProgressCallback &progress)
 {
   const LargePageKeeper keeper;
-  const Outcome outcome = meshField (field, options, mesh, report, progress);
+  Outcome outcome = meshField (field, options, mesh, report, progress);
   finishMesh (options, mesh, report);
   return outcome;
 }
@@ -258,24 +281,8 @@ buildMeshNearPoints (ImplicitField::ConstPtr &field, const Options &options, Tri
   const bool can_mend = !report.sharp_surfaces.empty () && !options.field.warp && !field->hasNodeValues () &&
                         options.polygonizer.iso_level == 0.0;
   for (const FlapEdges which : {FlapEdges::OF_FACE, FlapEdges::ALL, FlapEdges::SMALL_WHOLLY})
-  {
-    if (!outcome.ok () || !can_mend)
+    if (!outcome.ok () || !can_mend || !mendMesh (options, which, never_back, field, mesh, report))
       break;
-    const ImplicitField::ConstPtr field_before = field;
-    const Report report_before = report;
-    if (!mendFlaps (options, mesh, which, report, field))
-      break;
-    TriangleMesh mended;
-    const Outcome again = meshField (*field, options, mended, report, never_back);
-    if (again.ok () && report.topology.boundary_edges <= report_before.topology.boundary_edges)
-    {
-      std::swap (mesh, mended);
-      continue;
-    }
-    field = field_before; // that was no better
-    report = report_before;
-    break;
-  }
   finishMesh (options, mesh, report);
   return outcome;
 }

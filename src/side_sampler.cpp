@@ -91,6 +91,7 @@ solveTogether (SideSampler &sampler, std::vector<CreaseSolver *> solvers)
     if (solvers.empty ())
       return;
     std::vector<SideSampler::Question> questions;
+    questions.reserve (solvers.size ());
     for (const CreaseSolver *const solver : solvers)
       questions.push_back ({solver->position (), &solver->sides (), {}});
     sampler.sample (questions, LocalField::Slope::EXACT);
