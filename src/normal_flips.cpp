@@ -21,17 +21,18 @@ constexpr int NEIGHBORS = 12;
 /** \brief What the neighbours of a point make of its normal. */
 struct Opinion
 {
-  int with = 0, against = 0;                                             ///< of those on its level
-  int alike = 0, opposite = 0;                                           ///< of all
-  int before = 0, behind = 0;                                            ///< where those lie that are opposite
-  float squares = 0.0f, fourths = 0.0f, heights = 0.0f, products = 0.0f; ///< of opposite ones: d², d⁴, h and h d²
+  int with = 0, against = 0;            ///< of those on its level
+  int alike = 0, opposite = 0;          ///< of all
+  int before = 0, behind = 0;           ///< where those lie that are opposite
+  double squares = 0.0, fourths = 0.0;  ///< sums over opposite ones of d² and d⁴, in any unit ...
+  double heights = 0.0, products = 0.0; ///< ... and of h and h d²
 
   void
-  addOpposite (float squared, float height)
+  addOpposite (double squared, double height)
   {
     ++opposite;
-    before += height > 0.0f ? 1 : 0;
-    behind += height < 0.0f ? 1 : 0;
+    before += height > 0.0 ? 1 : 0;
+    behind += height < 0.0 ? 1 : 0;
     squares += squared;
     fourths += squared * squared;
     heights += height;
@@ -43,12 +44,11 @@ struct Opinion
   bool
   isWall () const
   {
-    constexpr float THICK = 0.08f; // of their mean distance
-    const auto count = static_cast<float> (opposite);
-    const float spread = count * fourths - squares * squares;
-    const float at_point =
-        spread > 0.0f ? (heights * fourths - products * squares) / spread : heights / std::max (count, 1.0f);
-    return at_point < -THICK * std::sqrt (squares / std::max (count, 1.0f));
+    constexpr double THICK = 0.08; // of their distance, root mean square
+    const double count = std::max (1, opposite);
+    const double spread = count * fourths - squares * squares;
+    const double at_point = spread > 0.0 ? (heights * fourths - products * squares) / spread : heights / count;
+    return at_point < -THICK * std::sqrt (squares / count);
   }
 
   /** \brief Whether it looks the other way than nearly all of its neighbours, or than most of them. */
@@ -81,7 +81,7 @@ askNeighbors (const NeighborSearch &search, const OrientedPoints &points, std::s
     const Eigen::Vector3f d = points.positions[j] - position;
     const float height = d.dot (normal);
     if (is_opposite)
-      opinion.addOpposite (d.squaredNorm (), height);
+      opinion.addOpposite (static_cast<double> (d.squaredNorm ()), static_cast<double> (height));
     else
       ++opinion.alike;
     if (std::abs (height) <= LEVEL * d.norm ())
