@@ -123,7 +123,8 @@ reportPoints (const std::string &class_name, const Report &report, const Options
   if (report.orientation == Orientation::VIEW_POINT)
     how << "to the view point (" << eye.x () << ", " << eye.y () << ", " << eye.z () << ")";
   else
-    how << "outwards, from neighbour to neighbour"
+    how << (report.orientation == Orientation::ONE_SIDE ? "to the side that all of them are seen from"
+                                                        : "outwards, from neighbour to neighbour")
         << (options.normals.has_view_point ? ", where the view point cannot have seen the surface" : "");
   if (points.without_normal > 0)
     PCL_WARN ("[%s::reconstruct] %zu points have no usable normal: normals are estimated and oriented %s.\n",

@@ -5,12 +5,15 @@
 #include "orientation_graph.h"
 #include "orientation_layers.h"
 #include "parallel_collect.h"
+#include "seen_side.h"
+#include "sign_regions.h"
 
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <map>
 #include <numeric>
+#include <optional>
 #include <utility>
 
 namespace erkpa
@@ -220,12 +223,9 @@ struct Pieces
  * \param[out] turned per node, whether its normal must be turned for that
  */
 Pieces
-agree (const OrientedPoints &points, const NeighborSearch &search, int k, int threads,
+agree (const OrientedPoints &points, const NeighborSearch &search, const Survey &known, int threads,
        std::vector<Eigen::Vector3f> &normals, std::vector<char> &turned)
 {
-  Survey known = survey (points, search, SurfaceKind::CLOSED, k, threads, normals);
-  if (known.open > OPEN)
-    known = survey (points, search, SurfaceKind::OPEN, k, threads, normals);
   Network network = connect (points, search, known, threads);
   const std::size_t between_neighbors = network.links.size ();
   const auto count = static_cast<int> (points.size ());
@@ -237,7 +237,8 @@ agree (const OrientedPoints &points, const NeighborSearch &search, int k, int th
       if (layers[i] != 0) // the node after the last is the outside
         network.links.push_back ({static_cast<int> (i), count, LAYER_WEIGHT * static_cast<float> (layers[i])});
     }
-  const std::vector<char> flips = agreeOnSigns (count + 1, network.links, between_neighbors, threads);
+  std::vector<char> flips = agreeOnSigns (count + 1, network.links, between_neighbors, threads);
+  turnRegions (network.links, between_neighbors, flips);
   Pieces pieces;
   pieces.of_node = network.pieces;
   for (std::size_t i = 0; i < points.size (); ++i)
@@ -251,14 +252,61 @@ agree (const OrientedPoints &points, const NeighborSearch &search, int k, int th
   return pieces;
 }
 
+/** \brief Have all normals that were not given look at a viewer, or away from one whom most given ones look away from.
+ * \return false where given normals say that the viewer has not seen the surface
+ */
+bool
+faceViewer (const OrientedPoints &points, const Viewer &viewer, std::vector<Eigen::Vector3f> &normals)
+{
+  double given = 0.0, facing = 0.0;
+  const auto isFacing = [&] (std::size_t i) { return normals[i].dot (viewer.from (points.positions[i])) >= 0.0f; };
+  for (std::size_t i = 0; i < points.size (); ++i)
+    if (!points.normals[i].isZero (0.0f))
+    {
+      given += 1.0;
+      facing += isFacing (i) ? 1.0 : 0.0;
+    }
+  const bool is_other_side = viewer.is_far && facing < (1.0 - SEEN) * given;
+  if (!is_other_side && facing < SEEN * given)
+    return false;
+  for (std::size_t i = 0; i < points.size (); ++i)
+    if (points.normals[i].isZero (0.0f) && isFacing (i) == is_other_side)
+      normals[i] = -normals[i];
+  return true;
+}
+
+/** \brief The one way in which a scan that is seen from one side can be oriented.
+ * \return false where there is no such side
+ */
+bool
+orientToOneSide (const OrientedPoints &points, const NeighborSearch &search, int k, const NormalOptions &options,
+                 std::vector<Eigen::Vector3f> &normals, Orientation &orientation)
+{
+  std::optional<Eigen::Vector3f> view_point;
+  if (options.has_view_point)
+    view_point = (options.view_point - points.origin).cast<float> ();
+  const Facets facets = facetsOfNormals (points, search, SurfaceKind::OPEN, k, options.threads, normals);
+  const auto viewer = findViewer (points, facets, view_point, Eigen::Vector3f (-points.origin.cast<float> ()));
+  orientation = options.has_view_point && viewer && !viewer->is_far ? Orientation::VIEW_POINT : Orientation::ONE_SIDE;
+  return viewer && faceViewer (points, *viewer, normals);
+}
+
 } // namespace
 
 Orientation
 orientNormals (const OrientedPoints &points, const NeighborSearch &search, int k, const NormalOptions &options,
                std::vector<Eigen::Vector3f> &normals)
 {
+  Orientation orientation = Orientation::VIEW_POINT;
+  Survey known = survey (points, search, SurfaceKind::CLOSED, k, options.threads, normals);
+  if (known.open > OPEN)
+  {
+    if (orientToOneSide (points, search, k, options, normals, orientation))
+      return orientation;
+    known = survey (points, search, SurfaceKind::OPEN, k, options.threads, normals);
+  }
   std::vector<char> turned (points.size ());
-  Pieces pieces = agree (points, search, k, options.threads, normals, turned);
+  Pieces pieces = agree (points, search, known, options.threads, normals, turned);
 
   const Eigen::Vector3f view_point = (options.view_point - points.origin).cast<float> ();
   const std::array<Eigen::Vector3f, 26> ways = directions ();
@@ -271,7 +319,7 @@ orientNormals (const OrientedPoints &points, const NeighborSearch &search, int k
       votes.given += turned[i] ? -1.0 : 1.0;
   }
 
-  Orientation orientation = Orientation::VIEW_POINT;
+  orientation = Orientation::VIEW_POINT;
   for (std::size_t i = 0; i < points.size (); ++i)
   {
     if (!points.normals[i].isZero (0.0f))

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include "height_fit.h"
 #include "neighborhood.h"
 #include "normal_sharpening.h"
 #include "normal_smoothing.h"
@@ -131,22 +132,8 @@ private:
   gather (Neighborhood &near, std::size_t i, int k) const
   {
     constexpr float OPPOSITE = -0.3f; // cosine: the other side of a thin plate, even if smeared over its rim
-    search_.nearestK (points_.positions[i], k, near.indices, near.squared_distances);
-    near.order.clear ();
-    for (std::size_t j = 0; j < near.indices.size (); ++j)
-      near.order.emplace_back (near.squared_distances[j], near.indices[j]);
-    std::sort (near.order.begin (), near.order.end ());
-    near.nodes.clear ();
-    near.positions.clear ();
-    for (const auto &[squared_distance, j] : near.order)
-    {
-      const auto node = static_cast<std::size_t> (j);
-      if (points_.normals[node].dot (points_.normals[i]) < OPPOSITE)
-        continue;
-      near.nodes.push_back (j);
-      near.positions.push_back (points_.positions[node]);
-    }
-    near.weights.assign (near.nodes.size (), 1.0f);
+    near.gather (search_, points_.positions, points_.positions[i], k,
+                 [&] (std::size_t node) { return points_.normals[node].dot (points_.normals[i]) >= OPPOSITE; });
   }
 
   /** \brief Below the tolerance one deviation is as good as the other. */
@@ -180,10 +167,13 @@ private:
     HeightFit &best = fits_[i];
     best = fitAll (near, i);
     smooth_[i] = isSmooth (best);
+    if (smooth_[i])
+      return;
+    near.sort (points_.positions, points_.positions[i]);
     for (const double share : {0.6, 0.4})
     {
       const auto fewer = static_cast<std::size_t> (share * k_);
-      if (smooth_[i] || fewer < FEWEST || fewer >= near.nodes.size ())
+      if (fewer < FEWEST || fewer >= near.nodes.size ())
         continue;
       near.positions.resize (fewer);
       near.weights.assign (fewer, 1.0f);
@@ -207,6 +197,7 @@ private:
       return;
     gather (near, i, k_ + k_ / 2);
     const Eigen::Vector3f &x = points_.positions[i];
+    const HeightFit *best = &fits_[i];
     double least = HUGE_VAL;
     for (const int j : near.nodes)
     {
@@ -219,9 +210,10 @@ private:
       const double misfit =
           (deviation * deviation + distance * distance) * (1.0 + 0.01 * reach) * (1.0 + 10.0 / fit.weight ());
       if (misfit < least)
-        chosen_[i] = fit;
+        best = &fit;
       least = std::min (least, misfit);
     }
+    chosen_[i] = *best;
     refine (near, i, false);
   }
 
@@ -240,6 +232,7 @@ private:
   refine (Neighborhood &near, std::size_t i, bool by_normals)
   {
     constexpr int TURNS = 2;
+    constexpr float SETTLED = 1e-3f; // radians
     const Eigen::Vector3f &x = points_.positions[i];
     for (int turn = 0; turn < TURNS; ++turn)
     {
@@ -252,7 +245,10 @@ private:
       const double deviation = atLeastTolerance (fit.deviation ());
       if (std::abs (fit.distance (x)) > 3.0 * deviation || deviation > 1.2 * atLeastTolerance (before.deviation ()))
         return;
+      const bool is_settled = (fit.normal (x) - before.normal (x)).norm () < SETTLED;
       chosen_[i] = fit;
+      if (is_settled)
+        return;
     }
   }
 
@@ -267,12 +263,12 @@ private:
     std::size_t on_it = 0;
     for (std::size_t j = 0; j < near.nodes.size (); ++j)
     {
-      double squares = std::pow (surface.distance (near.positions[j]) / sigma, 2);
+      Eigen::Vector3f normal;
+      const auto distance = static_cast<float> (surface.distance (near.positions[j], normal) / sigma);
+      float squares = distance * distance;
       if (by_normals)
-        squares +=
-            (surface.normal (near.positions[j]) - normals_[static_cast<std::size_t> (near.nodes[j])]).squaredNorm () /
-            (ANGLE * ANGLE);
-      near.weights[j] = squares < 9.0 ? static_cast<float> (std::exp (-0.5 * squares)) : 0.0f;
+        squares += (normal - normals_[static_cast<std::size_t> (near.nodes[j])]).squaredNorm () / (ANGLE * ANGLE);
+      near.weights[j] = squares < 9.0f ? std::exp (-0.5f * squares) : 0.0f;
       on_it += near.weights[j] > 0.3f;
     }
     return on_it;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "orientation_facets.h"
 
+#include "height_fit.h"
 #include "noise.h"
 #include "normal_smoothing.h"
 #include "orientation_planes.h"
@@ -62,7 +63,6 @@ public:
     return facets;
   }
 
-private:
   /** \brief The estimated normals themselves: where noise hides the faces, fits to fewer points are worse. */
   Facets
   fromNormals () const
@@ -77,6 +77,7 @@ private:
     return facets;
   }
 
+private:
   double
   atLeastTolerance (double deviation) const
   {
@@ -87,7 +88,7 @@ private:
   void
   fitAround (FacetNeighborhood &near, std::size_t i)
   {
-    near.gather (points_, search_, i, k_);
+    near.gatherAll (search_, points_.positions, i, k_);
     const Eigen::Vector3f &x = points_.positions[i], &side = normals_[i];
     if (near.nodes.size () < FEWEST)
       return;
@@ -96,6 +97,7 @@ private:
     smooth_[i] = best.deviation () < 1.1 * tolerance_ && std::abs (best.distance (x)) < 3.0 * tolerance_;
     if (smooth_[i])
       return;
+    near.sort (points_.positions, x);
     Eigen::Vector3f normal = fullestPlane (near, side);
     std::size_t on_it = weigh (
         near, [&] (const Eigen::Vector3f &p) { return normal.dot (p - x); }, 2.0 * tolerance_);
@@ -147,8 +149,8 @@ private:
     std::size_t on_it = 0;
     for (std::size_t j = 0; j < near.positions.size (); ++j)
     {
-      const double square = std::pow (distance (near.positions[j]) / sigma, 2);
-      near.weights[j] = square < 9.0 ? static_cast<float> (std::exp (-0.5 * square)) : 0.0f;
+      const auto share = static_cast<float> (distance (near.positions[j]) / sigma);
+      near.weights[j] = share * share < 9.0f ? std::exp (-0.5f * share * share) : 0.0f;
       on_it += near.weights[j] > 0.3f;
     }
     return on_it;
@@ -162,7 +164,7 @@ private:
     const HeightFit *best = &fits_[i];
     double least = smooth_[i] ? 0.0 : HUGE_VAL;
     if (!smooth_[i])
-      near.gather (points_, search_, i, k_);
+      near.gatherAll (search_, points_.positions, i, k_);
     for (std::size_t j = 0; !smooth_[i] && j < near.nodes.size (); ++j)
     {
       const HeightFit &fit = fits_[static_cast<std::size_t> (near.nodes[j])];
@@ -218,6 +220,13 @@ findFacets (const OrientedPoints &points, const NeighborSearch &search, SurfaceK
             const std::vector<Eigen::Vector3f> &normals)
 {
   return FacetFinder (points, search, kind, k, threads, normals).run ();
+}
+
+Facets
+facetsOfNormals (const OrientedPoints &points, const NeighborSearch &search, SurfaceKind kind, int k, int threads,
+                 const std::vector<Eigen::Vector3f> &normals)
+{
+  return FacetFinder (points, search, kind, k, threads, normals).fromNormals ();
 }
 
 } // namespace erkpa

@@ -47,4 +47,10 @@ Facets
 findFacets (const OrientedPoints &points, const NeighborSearch &search, SurfaceKind kind, int k, int threads,
             const std::vector<Eigen::Vector3f> &normals);
 
+/** \brief The facets that estimated normals make by themselves, quickly: blended at edges, and of both sides of walls.
+ */
+Facets
+facetsOfNormals (const OrientedPoints &points, const NeighborSearch &search, SurfaceKind kind, int k, int threads,
+                 const std::vector<Eigen::Vector3f> &normals);
+
 } // namespace erkpa

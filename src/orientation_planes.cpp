@@ -32,24 +32,6 @@ leastHeight (const FacetNeighborhood &near, double spacing, std::size_t count)
 
 } // namespace
 
-void
-FacetNeighborhood::gather (const OrientedPoints &points, const NeighborSearch &search, std::size_t i, int k)
-{
-  search.nearestK (points.positions[i], k, indices, squared_distances);
-  order.clear ();
-  for (std::size_t j = 0; j < indices.size (); ++j)
-    order.emplace_back (squared_distances[j], indices[j]);
-  std::sort (order.begin (), order.end ());
-  positions.clear ();
-  nodes.clear ();
-  for (const auto &[squared, j] : order)
-  {
-    nodes.push_back (j);
-    positions.push_back (points.positions[static_cast<std::size_t> (j)]);
-  }
-  weights.assign (nodes.size (), 1.0f);
-}
-
 double
 noiseOfSheets (const OrientedPoints &points, const NeighborSearch &search, double spacing, int threads)
 {
@@ -61,7 +43,8 @@ noiseOfSheets (const OrientedPoints &points, const NeighborSearch &search, doubl
       heights.size (), threads, [] { return FacetNeighborhood (); },
       [&] (FacetNeighborhood &near, std::size_t i)
       {
-        near.gather (points, search, i * step, CLEAN_SUPPORT);
+        near.gatherAll (search, points.positions, i * step, CLEAN_SUPPORT);
+        near.sort (points.positions, points.positions[i * step]);
         heights[i] = near.nodes.size () > ON_IT ? leastHeight (near, spacing, ON_IT) : 0.0;
       });
   if (heights.empty ())

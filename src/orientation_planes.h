@@ -16,19 +16,22 @@
 namespace erkpa
 {
 
-/** \brief The point itself is the first of them. */
+/** \brief All neighbours of a point. */
 struct FacetNeighborhood : Neighborhood
 {
   using Ways = Eigen::Array<float, Eigen::Dynamic, 3>;
 
   Ways ways; ///< scratch memory: from the point to its neighbours
 
-  /** \brief The \a k nearest nodes of node \a i, all of weight 1. */
+  /** \brief The \a k nearest nodes of node \a i. */
   void
-  gather (const OrientedPoints &points, const NeighborSearch &search, std::size_t i, int k);
+  gatherAll (const NeighborSearch &search, const std::vector<Eigen::Vector3f> &all, std::size_t i, int k)
+  {
+    gather (search, all, all[i], k, [] (std::size_t) { return true; });
+  }
 };
 
-/** \brief Calls visit (normal) for the planes through the first neighbour and two others near it. */
+/** \brief Calls visit (normal) for the planes through the first neighbour and two others near it, once sorted. */
 template <typename VisitT>
 void
 visitPlanes (const FacetNeighborhood &near, double spacing, VisitT visit)

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <erkpa/oriented_points.h>
 
+#include "node_table.h"
 #include "parallel_collect.h"
 #include "repeated_points.h"
 #include "text.h"
@@ -10,6 +11,7 @@
 #include <algorithm>
 #include <atomic>
 #include <cmath>
+#include <memory>
 #include <numeric>
 #include <string>
 #include <utility>
@@ -184,17 +186,17 @@ normalOf (const PointView &view, int index)
 }
 
 /** \brief The values that all points have of one kind, \a count per point, for the chosen ones. */
-template <typename T>
+template <typename T, typename IndicesT>
 std::vector<T>
-choose (const std::vector<T> &values, std::size_t count, const std::vector<int> &chosen)
+choose (const std::vector<T> &values, std::size_t count, const IndicesT &chosen)
 {
   std::vector<T> result;
   if (values.empty ())
     return result;
   result.reserve (count * chosen.size ());
-  for (const int i : chosen)
+  for (const auto i : chosen)
   {
-    const auto first = values.begin () + static_cast<std::ptrdiff_t> (count) * i;
+    const auto first = values.begin () + static_cast<std::ptrdiff_t> (count) * static_cast<std::ptrdiff_t> (i);
     result.insert (result.end (), first, first + static_cast<std::ptrdiff_t> (count));
   }
   return result;
@@ -261,6 +263,20 @@ collectPoints (const PointView &view, OrientedPoints &points, PointCounts &count
   points.channels = view.channels;
   counts.without_normal = fillIn (view, threads, chosen, points);
   return {};
+}
+
+void
+sortInSpace (int threads, OrientedPoints &points)
+{
+  double spacing = 0.0;
+  const std::shared_ptr<const PointGrid> grid = makePointGrid (points.positions, threads, spacing);
+  const auto &order = grid->index ();
+  points.positions = choose (points.positions, 1, order);
+  points.normals = choose (points.normals, 1, order);
+  points.attributes = choose (points.attributes, static_cast<std::size_t> (points.channels), order);
+  points.confidences = choose (points.confidences, 1, order);
+  points.radii = choose (points.radii, 1, order);
+  points.shapes = choose (points.shapes, 1, order);
 }
 
 } // namespace erkpa

@@ -97,6 +97,9 @@ public:
     std::vector<std::uint32_t> places; ///< the first \a count of them
     std::vector<float> squared;        ///< their squared distances from the center
     std::vector<lanes::Stretch> stretches;
+    std::vector<float> selection; ///< scratch memory of nearestK (): squared distances
+    int last_k = 0;               ///< what it was asked for before
+    double last_reach = 0.0;      ///< and how far the k-th was
   };
 
   /** \brief The places of all points within \a radius of \a center, in ascending order. */
@@ -156,6 +159,9 @@ private:
 
   static Places &
   placesOfThread ();
+
+  float
+  takeNearest (std::size_t wanted, Places &ball, std::vector<std::pair<float, int>> &found) const;
 
   void
   spanBulk (const std::vector<Eigen::Vector3f> &positions);

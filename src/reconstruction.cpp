@@ -34,6 +34,8 @@ collect (const PointView &view, const SearchFactory &make_search, int threads,
                                         " distinct, finite points of " + std::to_string (report.points.read) + " read" +
                                         (report.points.no_confidence > 0 ? " that have a positive confidence" : "") +
                                         ": a surface needs at least " + std::to_string (Support::MIN_NODES + 1)};
+  if (report.points.without_normal > 0)
+    sortInSpace (threads, points); // every point will ask for its neighbours again and again
   search = make_search ? make_search (points) : makeKdTreeSearch ({shared, &shared->positions});
   layout = std::make_shared<const PointLayout> (points, threads);
   return {};

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "orientation_graph.h"
 #include "shapes.h"
+#include "sign_regions.h"
 
 #include <erkpa/normals.h>
 
@@ -243,4 +244,73 @@ TEST (Signs, FollowSureLinksButNotThoseThatOthersContradict)
   for (int i = 1; i < COUNT; ++i)
     EXPECT_NE (flips[static_cast<std::size_t> (i)], flips[static_cast<std::size_t> (i) - 1]) << i;
   EXPECT_EQ (flips[5], flips[COUNT]);
+}
+
+TEST (Normals, OfLandSeenFromTheAirLookUpOnRoofsAsWellAsBetweenThem)
+{
+  const auto height = [] (double x, double y)
+  {
+    return 0.1 * std::sin (2.0 * x) +
+           (std::abs (std::sin (5.0 * x)) > 0.7 && std::abs (std::cos (5.0 * y)) > 0.7 ? 0.3 : 0.0);
+  };
+  Orientation orientation = Orientation::NONE;
+  const OrientedPoints points = estimate (shapes::sheet (100, height), {}, orientation);
+  EXPECT_EQ (orientation, Orientation::ONE_SIDE);
+  for (const Eigen::Vector3f &normal : points.normals)
+    EXPECT_GE (normal.z (), 0.0f);
+}
+
+TEST (Normals, FaceTheOriginOutsideOfAScanThatIsSeenFromThere)
+{
+  shapes::Samples scan = shapes::sheet (60, [] (double x, double y) { return 3.0 + 0.5 * x * x * y; });
+  Orientation orientation = Orientation::NONE;
+  const OrientedPoints points = estimate (scan, {}, orientation);
+  EXPECT_EQ (orientation, Orientation::ONE_SIDE);
+  EXPECT_EQ (shareThatAgrees (points, scan.normals), 0.0) << "below";
+}
+
+TEST (Normals, OfTheOuterSideOfHalfASphereLookOutwards)
+{
+  shapes::Samples half;
+  const shapes::Samples sphere = shapes::sphere (6000);
+  for (std::size_t i = 0; i < sphere.size (); ++i)
+    if (sphere.positions[i].x () < -0.3)
+      half.add (sphere.positions[i] + Vector3d (0.0, 0.0, 5.0), sphere.normals[i]); // the origin sees it from the rim
+  Orientation orientation = Orientation::NONE;
+  EXPECT_EQ (shareThatAgrees (estimate (half, {}, orientation), half.normals), 1.0);
+}
+
+TEST (Normals, OfAScanAreTurnedLikeThoseThatWereGiven)
+{
+  const shapes::Samples sheet = shapes::sheet (40, [] (double x, double) { return 0.2 * std::sin (3.0 * x); });
+  OrientedPoints points;
+  for (std::size_t i = 0; i < sheet.size (); ++i)
+  {
+    points.positions.emplace_back (sheet.positions[i].cast<float> ());
+    points.normals.emplace_back (i % 3 == 0 ? Eigen::Vector3f (-sheet.normals[i].cast<float> ())
+                                            : Eigen::Vector3f (Eigen::Vector3f::Zero ()));
+  }
+  Orientation orientation = Orientation::NONE;
+  EXPECT_TRUE (erkpa::estimateNormals (points, erkpa::PointLayout (points, 0), {}, orientation).ok ());
+  EXPECT_EQ (shareThatAgrees (points, sheet.normals), 0.0);
+}
+
+TEST (SignRegions, AreTurnedWhereMostLinksAroundThemSpeakAgainstTheirSigns)
+{
+  constexpr int SIDE = 30;
+  std::vector<erkpa::SignedLink> links; // a square grid, all nodes of the same sign, but for one link that is wrong
+  const auto node = [] (int x, int y) { return SIDE * y + x; };
+  for (int y = 0; y < SIDE; ++y)
+    for (int x = 0; x < SIDE; ++x)
+      for (const auto &[dx, dy] : {std::pair (-1, 0), std::pair (1, 0), std::pair (0, -1), std::pair (0, 1)})
+        if (x + dx >= 0 && x + dx < SIDE && y + dy >= 0 && y + dy < SIDE)
+          links.push_back ({node (x, y), node (x + dx, y + dy), x == 10 && y == 12 && dx == -1 ? -0.9f : 0.6f});
+  std::vector<char> flips (SIDE * SIDE + 1, 0);
+  for (int y = 10; y < 15; ++y)
+    for (int x = 10; x < 14; ++x)
+      flips[static_cast<std::size_t> (node (x, y))] = 1;
+  erkpa::turnRegions (links, links.size (), flips);
+  EXPECT_EQ (std::count (flips.begin (), flips.end (), 1), 0);
+  erkpa::turnRegions (links, links.size (), flips);
+  EXPECT_EQ (std::count (flips.begin (), flips.end (), 1), 0) << "what is right stays";
 }

@@ -22,6 +22,7 @@ enum class Orientation
 {
   NONE,       ///< they were given, and none but single ones were turned
   VIEW_POINT, ///< towards the view point
+  ONE_SIDE,   ///< the view point is unknown or cannot have seen the surface, but all of it is seen from one side
   PROPAGATION ///< at least in part from neighbour to neighbour, outwards: the view point is unknown or cannot
               ///< have seen the surface
 };

@@ -40,8 +40,10 @@ constexpr std::array<NamedValue<KernelType>, 6> KERNELS = {{{"automatic", Kernel
                                                             {"gaussian", KernelType::GAUSSIAN},
                                                             {"singular", KernelType::SINGULAR}}};
 
-constexpr std::array<NamedValue<Orientation>, 3> ORIENTATIONS = {
-    {{"none", Orientation::NONE}, {"view_point", Orientation::VIEW_POINT}, {"propagation", Orientation::PROPAGATION}}};
+constexpr std::array<NamedValue<Orientation>, 4> ORIENTATIONS = {{{"none", Orientation::NONE},
+                                                                  {"view_point", Orientation::VIEW_POINT},
+                                                                  {"one_side", Orientation::ONE_SIDE},
+                                                                  {"propagation", Orientation::PROPAGATION}}};
 
 template <typename EnumT, std::size_t N>
 std::string

@@ -116,8 +116,10 @@ private:
   void
   tellNormals () const
   {
-    const char *const how =
-        report_.orientation == Orientation::VIEW_POINT ? "towards the view point" : "from neighbour to neighbour";
+    const char *const how = report_.orientation == Orientation::VIEW_POINT ? "towards the view point"
+                            : report_.orientation == Orientation::ONE_SIDE
+                                ? "towards the side all of them are seen from"
+                                : "from neighbour to neighbour";
     if (report_.points.without_normal > 0)
       print_info ("  estimated %zu normals, oriented %s\n", report_.points.without_normal, how);
     if (report_.normals_contradicted)

@@ -1,0 +1,26 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "orientation_facets.h"
+#include "viewer.h"
+
+#include <optional>
+
+namespace erkpa
+{
+
+/** \brief Who sees nearly all points of an open surface at once, so that the normals look there.
+ *
+ * A column along the line of sight holds one layer of such a scan. Asked are the view point if it is known, else the
+ * origin if that lies outside, where sensors put themselves, and at last somebody far out on the side that most
+ * normals look to: up, where both of its sides would do. In that case it also does if most of the surface lies across
+ * the line of sight, though trees and eaves make more layers: land seen from the air.
+ * \param[in] facets of the points, whose signs mean nothing
+ * \param[in] view_point in the frame of the positions
+ * \param[in] origin of the input's frame in that of the positions
+ */
+std::optional<Viewer>
+findViewer (const OrientedPoints &points, const Facets &facets, const std::optional<Eigen::Vector3f> &view_point,
+            const Eigen::Vector3f &origin);
+
+} // namespace erkpa
