@@ -15,32 +15,69 @@ namespace erkpa
 namespace
 {
 
-/** \brief Share of the points that are in the only layer of their column. */
+/** \brief Width of columns in which a layer that is there has a point. */
 double
-shareInSingleLayers (const OrientedPoints &points, const Facets &facets, const Viewer &viewer)
+columnWidth (const OrientedPoints &points, double spacing, const Viewer &viewer)
 {
-  double width = COLUMN_WIDTH * facets.spacing;
-  if (!viewer.is_far)
-  {
-    std::vector<float> distances;
-    distances.reserve (points.size ());
-    for (const Eigen::Vector3f &x : points.positions)
-      distances.push_back (viewer.from (x).norm ());
-    const auto middle = distances.begin () + static_cast<std::ptrdiff_t> (distances.size () / 2);
-    std::nth_element (distances.begin (), middle, distances.end ());
-    width /= static_cast<double> (*middle);
-  }
-  std::ptrdiff_t single = 0;
-  visitColumns (lookAtLayers (points, facets, viewer, width), [&] (const Crossing *begin, const Crossing *end)
-                { single += countLayers (begin, end, facets.spacing) == 1 ? end - begin : 0; });
-  return static_cast<double> (single) / static_cast<double> (points.size ());
+  if (viewer.is_far)
+    return COLUMN_WIDTH * spacing;
+  std::vector<float> distances;
+  distances.reserve (points.size ());
+  for (const Eigen::Vector3f &x : points.positions)
+    distances.push_back (viewer.from (x).norm ());
+  const auto middle = distances.begin () + static_cast<std::ptrdiff_t> (distances.size () / 2);
+  std::nth_element (distances.begin (), middle, distances.end ());
+  return COLUMN_WIDTH * spacing / static_cast<double> (*middle);
 }
 
+/** \brief Columns of a kind, and the points in them. */
+struct ColumnCount
+{
+  double columns = 0.0, points = 0.0;
+
+  void
+  add (std::ptrdiff_t count)
+  {
+    columns += 1.0;
+    points += static_cast<double> (count);
+  }
+
+  double
+  pointsPerColumn () const
+  {
+    return points / std::max (1.0, columns);
+  }
+};
+
+/** \brief Whether the surface lies across the line of sight, mostly. */
 bool
-seesNearlyAll (const OrientedPoints &points, const Facets &facets, const Viewer &viewer)
+liesAcross (const OrientedPoints &points, const Facets &facets, const Viewer &viewer)
+{
+  constexpr double MOSTLY = 0.75; // mean cosine; half a sphere: 0.5
+  double sum = 0.0;
+  for (std::size_t i = 0; i < points.size (); ++i)
+    sum +=
+        std::abs (static_cast<double> (facets.of_node[i].normal.dot (viewer.from (points.positions[i]).normalized ())));
+  return sum > MOSTLY * static_cast<double> (points.size ());
+}
+
+/** \brief Whether the points are what a sensor sees from a place: one layer nearly everywhere, or, where it sees some
+ * things through others, no more points in columns of several layers than in those of one. */
+bool
+isSeenBy (const OrientedPoints &points, const Facets &facets, const Viewer &viewer)
 {
   constexpr double NEARLY_ALL = 0.85; // a sensor: 0.95; across closed surfaces and from inside of them 0.4 at most
-  return shareInSingleLayers (points, facets, viewer) > NEARLY_ALL;
+  constexpr double FEW = 0.25, AS_MANY = 1.5;
+  ColumnCount single, several;
+  visitColumns (lookAtLayers (points, facets, viewer, columnWidth (points, facets.spacing, viewer)),
+                [&] (const Crossing *begin, const Crossing *end)
+                {
+                  if (const int layers = countLayers (begin, end, facets.spacing); layers > 0)
+                    (layers == 1 ? single : several).add (end - begin);
+                });
+  const double share = single.points / static_cast<double> (points.size ());
+  return share > NEARLY_ALL || (share > FEW && several.pointsPerColumn () < AS_MANY * single.pointsPerColumn () &&
+                                liesAcross (points, facets, viewer));
 }
 
 /** \brief The direction that most facets look to, or away from. */
@@ -56,17 +93,6 @@ mainNormal (const Facets &facets)
   for (const Facet &facet : facets.of_node)
     sum += (axis.dot (facet.normal) < 0.0f ? -1.0 : 1.0) * facet.normal.cast<double> ();
   return sum.normalized ().cast<float> ();
-}
-
-/** \brief Whether the surface lies across a direction, mostly. */
-bool
-liesAcross (const Facets &facets, const Eigen::Vector3f &way)
-{
-  constexpr double MOSTLY = 0.75; // mean cosine; half a sphere: 0.5
-  double sum = 0.0;
-  for (const Facet &facet : facets.of_node)
-    sum += std::abs (static_cast<double> (facet.normal.dot (way)));
-  return sum > MOSTLY * static_cast<double> (facets.of_node.size ());
 }
 
 /** \brief Whether the side that facets look to along \a way is the outer one: where the surface bulges out, else up. */
@@ -94,15 +120,15 @@ std::optional<Viewer>
 findViewer (const OrientedPoints &points, const Facets &facets, const std::optional<Eigen::Vector3f> &view_point,
             const Eigen::Vector3f &origin)
 {
-  if (view_point && seesNearlyAll (points, facets, {*view_point, false}))
+  if (view_point && isSeenBy (points, facets, {*view_point, false}))
     return Viewer{*view_point, false};
   Eigen::AlignedBox3f box;
   for (const Eigen::Vector3f &x : points.positions)
     box.extend (x);
-  if (!view_point && !box.contains (origin) && seesNearlyAll (points, facets, {origin, false}))
+  if (!view_point && !box.contains (origin) && isSeenBy (points, facets, {origin, false}))
     return Viewer{origin, false};
   const Eigen::Vector3f way = mainNormal (facets);
-  if (!way.allFinite () || !(liesAcross (facets, way) || seesNearlyAll (points, facets, {way, true})))
+  if (!way.allFinite () || !isSeenBy (points, facets, {way, true}))
     return std::nullopt;
   return Viewer{isOuterSide (points, facets, way) ? way : Eigen::Vector3f (-way), true};
 }

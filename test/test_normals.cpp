@@ -260,6 +260,22 @@ TEST (Normals, OfLandSeenFromTheAirLookUpOnRoofsAsWellAsBetweenThem)
     EXPECT_GE (normal.z (), 0.0f);
 }
 
+TEST (Normals, OfALidOverASheetLookDownBelowIt)
+{
+  shapes::Samples lid = shapes::box (9000, {0.8, 0.8, 0.1}), both = lid;
+  for (Vector3d &p : both.positions)
+    p += Vector3d (0.0, 0.0, 0.5);
+  const shapes::Samples sheet = shapes::sheet (60, [] (double, double) { return 0.0; });
+  for (std::size_t i = 0; i < sheet.size (); ++i)
+    both.add (sheet.positions[i], sheet.normals[i]);
+  Orientation orientation = Orientation::NONE;
+  OrientedPoints points = estimate (both, {}, orientation);
+  EXPECT_EQ (orientation, Orientation::PROPAGATION);
+  points.positions.resize (lid.size ());
+  points.normals.resize (lid.size ());
+  EXPECT_GT (shareThatAgrees (points, lid.normals), 0.999);
+}
+
 TEST (Normals, FaceTheOriginOutsideOfAScanThatIsSeenFromThere)
 {
   shapes::Samples scan = shapes::sheet (60, [] (double x, double y) { return 3.0 + 0.5 * x * x * y; });
