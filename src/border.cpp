@@ -6,7 +6,7 @@
 
 #include <algorithm>
 #include <cstdint>
-#include <unordered_map>
+#include <vector>
 
 namespace erkpa
 {
@@ -15,21 +15,6 @@ namespace
 {
 
 using Triangle = std::array<int, 3>;
-
-/** \brief The places of the triangles that have a marked vertex. */
-LargeVector<std::size_t>
-findTouching (const std::vector<char> &marks, int threads, const LargeVector<Triangle> &triangles)
-{
-  const auto is_marked = [&marks] (int v) { return marks[static_cast<std::size_t> (v)] != 0; };
-  return parallelCollect<LargeVector<std::size_t>> (
-      triangles.size (), threads,
-      [&] (std::size_t first, std::size_t last, LargeVector<std::size_t> &found)
-      {
-        for (std::size_t i = first; i < last; ++i)
-          if (std::any_of (triangles[i].begin (), triangles[i].end (), is_marked))
-            found.push_back (i);
-      });
-}
 
 /** \brief The vertices to cut away: beyond the limit, and connected to the border through such vertices. */
 std::vector<char>
@@ -67,13 +52,50 @@ findBeyondBorder (double limit, int threads, const LargeVector<int> &border, con
 class Clipper
 {
 public:
-  Clipper (double limit, const std::vector<char> &beyond, SurfaceVertices &vertices)
-      : limit_ (limit), beyond_ (beyond), vertices_ (vertices)
+  Clipper (const std::vector<char> &beyond, const LargeVector<Triangle> &triangles)
+      : beyond_ (beyond), triangles_ (triangles)
   {
   }
 
+  /** \brief Put a vertex on each edge that the line crosses, where two of these triangles have it or one. */
   void
-  clip (const Triangle &triangle, LargeVector<Triangle> &kept)
+  cutEdges (double limit, const LargeVector<std::size_t> &touching, int threads, SurfaceVertices &vertices)
+  {
+    cuts_ = parallelCollect<LargeVector<std::uint64_t>> (
+        touching.size (), threads,
+        [&] (std::size_t first, std::size_t last, LargeVector<std::uint64_t> &found)
+        {
+          for (std::size_t t = first; t < last; ++t)
+            for (std::size_t i = 0; i < 3; ++i)
+            {
+              const int here = triangles_[touching[t]][i], next = triangles_[touching[t]][(i + 1) % 3];
+              if (isBeyond (here) != isBeyond (next))
+                found.push_back (isBeyond (here) ? keyOf (next, here) : keyOf (here, next));
+            }
+        });
+    std::sort (cuts_.begin (), cuts_.end ());
+    cuts_.erase (std::unique (cuts_.begin (), cuts_.end ()), cuts_.end ());
+    first_new_ = vertices.positions.size ();
+    for (const std::uint64_t cut : cuts_)
+      vertices.positions.push_back (positionOn (limit, cut, vertices));
+  }
+
+  /** \brief What is left of the triangles whose edges were cut. */
+  LargeVector<Triangle>
+  clipAll (const LargeVector<std::size_t> &touching, int threads, const SurfaceVertices &vertices) const
+  {
+    return parallelCollect<LargeVector<Triangle>> (
+        touching.size (), threads,
+        [&] (std::size_t first, std::size_t last, LargeVector<Triangle> &kept)
+        {
+          for (std::size_t t = first; t < last; ++t)
+            clip (triangles_[touching[t]], vertices, kept);
+        });
+  }
+
+private:
+  void
+  clip (const Triangle &triangle, const SurfaceVertices &vertices, LargeVector<Triangle> &kept) const
   {
     std::array<int, 4> polygon{};
     std::size_t size = 0;
@@ -83,61 +105,74 @@ public:
       if (!isBeyond (here))
         polygon[size++] = here;
       if (isBeyond (here) != isBeyond (next))
-        polygon[size++] = isBeyond (here) ? vertexBetween (next, here) : vertexBetween (here, next);
+        polygon[size++] = vertexOn (isBeyond (here) ? keyOf (next, here) : keyOf (here, next));
     }
+    const auto length = [&] (std::size_t a, std::size_t b)
+    {
+      return (vertices.positions[static_cast<std::size_t> (polygon[a])] -
+              vertices.positions[static_cast<std::size_t> (polygon[b])])
+          .squaredNorm ();
+    };
     if (size == 3)
       kept.push_back ({polygon[0], polygon[1], polygon[2]});
     if (size != 4)
       return;
-    if (length (polygon[0], polygon[2]) <= length (polygon[1], polygon[3]))
+    if (length (0, 2) <= length (1, 3))
       kept.insert (kept.end (), {{polygon[0], polygon[1], polygon[2]}, {polygon[0], polygon[2], polygon[3]}});
     else
       kept.insert (kept.end (), {{polygon[1], polygon[2], polygon[3]}, {polygon[1], polygon[3], polygon[0]}});
   }
 
-private:
   bool
   isBeyond (int v) const
   {
-    return static_cast<std::size_t> (v) < beyond_.size () && beyond_[static_cast<std::size_t> (v)] != 0;
+    return beyond_[static_cast<std::size_t> (v)] != 0;
   }
 
-  const Eigen::Vector3d &
-  position (int v) const
+  static std::uint64_t
+  keyOf (int inner, int outer)
   {
-    return vertices_.positions[static_cast<std::size_t> (v)];
-  }
-
-  double
-  length (int a, int b) const
-  {
-    return (position (a) - position (b)).squaredNorm ();
+    return static_cast<std::uint64_t> (inner) << 32 | static_cast<std::uint32_t> (outer);
   }
 
   int
-  vertexBetween (int inner, int outer)
+  vertexOn (std::uint64_t cut) const
   {
-    const auto key = static_cast<std::uint64_t> (inner) << 32 | static_cast<std::uint32_t> (outer);
-    const auto [entry, is_new] = made_.try_emplace (key, static_cast<int> (vertices_.positions.size ()));
-    if (is_new)
-    {
-      const double room = limit_ - vertices_.border_offsets[static_cast<std::size_t> (inner)];
-      const double span = vertices_.border_offsets[static_cast<std::size_t> (outer)] -
-                          vertices_.border_offsets[static_cast<std::size_t> (inner)];
-      const double t = std::clamp (span > 0.0 ? room / span : 0.5, 0.05, 0.95); // no slivers
-      const Eigen::Vector3d p = (1.0 - t) * position (inner) + t * position (outer);
-      vertices_.positions.push_back (p);
-    }
-    return entry->second;
+    const auto place = std::lower_bound (cuts_.begin (), cuts_.end (), cut) - cuts_.begin ();
+    return static_cast<int> (first_new_ + static_cast<std::size_t> (place));
   }
 
-  double limit_;
+  static Eigen::Vector3d
+  positionOn (double limit, std::uint64_t cut, const SurfaceVertices &vertices)
+  {
+    const auto inner = static_cast<std::size_t> (cut >> 32), outer = static_cast<std::size_t> (cut & 0xffffffffu);
+    const double room = limit - vertices.border_offsets[inner],
+                 span = vertices.border_offsets[outer] - vertices.border_offsets[inner];
+    const double t = std::clamp (span > 0.0 ? room / span : 0.5, 0.05, 0.95); // no slivers
+    return (1.0 - t) * vertices.positions[inner] + t * vertices.positions[outer];
+  }
+
   const std::vector<char> &beyond_;
-  SurfaceVertices &vertices_;
-  std::unordered_map<std::uint64_t, int> made_;
+  const LargeVector<Triangle> &triangles_;
+  LargeVector<std::uint64_t> cuts_; // edges from inside to beyond, sorted
+  std::size_t first_new_ = 0;       // vertex on the first of them
 };
 
 } // namespace
+
+LargeVector<std::size_t>
+findTouching (const std::vector<char> &marks, int threads, const LargeVector<Triangle> &triangles)
+{
+  const auto is_marked = [&marks] (int v) { return marks[static_cast<std::size_t> (v)] != 0; };
+  return parallelCollect<LargeVector<std::size_t>> (
+      triangles.size (), threads,
+      [&] (std::size_t first, std::size_t last, LargeVector<std::size_t> &found)
+      {
+        for (std::size_t i = first; i < last; ++i)
+          if (std::any_of (triangles[i].begin (), triangles[i].end (), is_marked))
+            found.push_back (i);
+      });
+}
 
 void
 trimBorder (double limit, int threads, LargeVector<int> &border, LargeVector<Triangle> &triangles,
@@ -150,10 +185,9 @@ trimBorder (double limit, int threads, LargeVector<int> &border, LargeVector<Tri
     return;
   const std::size_t first_new = vertices.positions.size ();
   const LargeVector<std::size_t> touching = findTouching (beyond, threads, triangles);
-  Clipper clipper (limit, beyond, vertices);
-  LargeVector<Triangle> clipped;
-  for (const std::size_t index : touching)
-    clipper.clip (triangles[index], clipped);
+  Clipper clipper (beyond, triangles);
+  clipper.cutEdges (limit, touching, threads, vertices);
+  const LargeVector<Triangle> clipped = clipper.clipAll (touching, threads, vertices);
   std::size_t kept = touching.front ();
   for (std::size_t t = 0; t < touching.size (); ++t)
   {
@@ -168,53 +202,6 @@ trimBorder (double limit, int threads, LargeVector<int> &border, LargeVector<Tri
                 border.end ());
   for (std::size_t v = first_new; v < vertices.positions.size (); ++v)
     border.push_back (static_cast<int> (v));
-}
-
-void
-splitFans (const LargeVector<int> &border, int threads, LargeVector<Triangle> &triangles, SurfaceVertices &vertices)
-{
-  if (border.empty ())
-    return;
-  std::vector<char> on_border (vertices.positions.size (), 0);
-  for (const int v : border)
-    on_border[static_cast<std::size_t> (v)] = 1;
-  const auto is_on_border = [&on_border] (int v) { return on_border[static_cast<std::size_t> (v)] != 0; };
-  std::vector<Triangle *> touching;
-  for (const std::size_t index : findTouching (on_border, threads, triangles))
-    touching.push_back (&triangles[index]);
-
-  // Corners of triangles that share an edge belong to one fan at either end of it.
-  DisjointSets fans (3 * touching.size ());
-  std::unordered_map<std::uint64_t, int> corner_of_edge; // by the edge's direction, the corner at its start
-  const auto key = [] (int start, int end)
-  { return static_cast<std::uint64_t> (start) << 32 | static_cast<std::uint32_t> (end); };
-  for (std::size_t corner = 0; corner < 3 * touching.size (); ++corner)
-  {
-    const Triangle &t = *touching[corner / 3];
-    const int start = t[corner % 3], end = t[(corner + 1) % 3], here = static_cast<int> (corner);
-    const auto following = [] (int c) { return c % 3 == 2 ? c - 2 : c + 1; };
-    corner_of_edge.emplace (key (start, end), here);
-    const auto twin = corner_of_edge.find (key (end, start));
-    if (twin == corner_of_edge.end ())
-      continue;
-    fans.unite (following (here), twin->second);
-    fans.unite (here, following (twin->second));
-  }
-  std::unordered_map<int, int> first_fans, copies; // vertex -> the fan that keeps it, other fan -> its own vertex
-  for (std::size_t corner = 0; corner < 3 * touching.size (); ++corner)
-  {
-    int &vertex = (*touching[corner / 3])[corner % 3];
-    const int fan = fans.find (static_cast<int> (corner));
-    if (!is_on_border (vertex) || first_fans.try_emplace (vertex, fan).first->second == fan)
-      continue;
-    const auto [copy, is_new] = copies.try_emplace (fan, static_cast<int> (vertices.positions.size ()));
-    if (is_new)
-    {
-      vertices.append (static_cast<std::size_t> (vertex));
-      on_border.push_back (0); // done
-    }
-    vertex = copy->second;
-  }
 }
 
 } // namespace erkpa

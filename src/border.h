@@ -4,10 +4,15 @@
 #include "surface_vertices.h"
 
 #include <array>
+#include <cstddef>
 #include <vector>
 
 namespace erkpa
 {
+
+/** \brief The places of the triangles that have a marked vertex. */
+LargeVector<std::size_t>
+findTouching (const std::vector<char> &marks, int threads, const LargeVector<std::array<int, 3>> &triangles);
 
 /** \brief Cut a surface off where the data ends.
  *

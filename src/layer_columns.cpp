@@ -89,28 +89,38 @@ private:
   Eigen::Vector3f u_, v_;
 };
 
+/** \brief A number that has nothing to do with those of the columns beside it. */
+std::uint64_t
+scrambled (std::int64_t number)
+{
+  const std::uint64_t mixed = static_cast<std::uint64_t> (number) * 0x9e3779b97f4a7c15u;
+  return mixed >> 32;
+}
+
 } // namespace
 
 std::vector<Crossing>
-lookAtLayers (const OrientedPoints &points, const Facets &facets, const Viewer &viewer, double width)
+lookAtLayers (const OrientedPoints &points, const Facets &facets, const Viewer &viewer, double width,
+              std::uint64_t one_in)
 {
   constexpr float LEAST_SLOPE = 0.05f;
   const Columns columns (viewer, width);
   const Eigen::Vector3f origin = columns.origin ();
-  std::vector<Crossing> crossings (points.size ());
+  std::vector<Crossing> crossings;
+  crossings.reserve (points.size () / one_in);
   for (std::size_t i = 0; i < points.size (); ++i)
   {
     const Eigen::Vector3f &x = points.positions[i];
     const Facet &facet = facets.of_node[i];
     const Column column = columns.of (x);
-    Crossing &c = crossings[i];
-    c.column = column.number;
-    c.slope = facet.normal.dot (column.way);
-    const float steepness = std::max (LEAST_SLOPE, std::abs (c.slope));
-    c.depth = (column.middle - origin).dot (column.way) -
-              facet.normal.dot (column.middle - x) / std::copysign (steepness, c.slope);
-    c.thickness = (2.0f * facet.deviation + facet.bend * static_cast<float> (facets.spacing)) / steepness;
-    c.node = static_cast<int> (i);
+    if (one_in > 1 && scrambled (column.number) % one_in != 0)
+      continue;
+    const float slope = facet.normal.dot (column.way), steepness = std::max (LEAST_SLOPE, std::abs (slope));
+    crossings.push_back ({column.number,
+                          (column.middle - origin).dot (column.way) -
+                              facet.normal.dot (column.middle - x) / std::copysign (steepness, slope),
+                          (2.0f * facet.deviation + facet.bend * static_cast<float> (facets.spacing)) / steepness,
+                          slope, static_cast<int> (i)});
   }
   std::sort (crossings.begin (), crossings.end ());
   return crossings;

@@ -32,10 +32,12 @@ struct Crossing
 
 /** \brief What a viewer sees of a cloud, column by column.
  * \param[in] width of columns; for a viewer that is not far, at a distance of 1
+ * \param[in] one_in look at one of so many columns only, which lie here and there
  * \return by columns, each from the closest node to the farthest
  */
 std::vector<Crossing>
-lookAtLayers (const OrientedPoints &points, const Facets &facets, const Viewer &viewer, double width);
+lookAtLayers (const OrientedPoints &points, const Facets &facets, const Viewer &viewer, double width,
+              std::uint64_t one_in = 1);
 
 /** \brief Whether a node is the last one of its layer in a column. */
 bool

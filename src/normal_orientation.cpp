@@ -4,6 +4,7 @@
 #include "orientation_facets.h"
 #include "orientation_graph.h"
 #include "orientation_layers.h"
+#include "orientation_planes.h"
 #include "parallel_collect.h"
 #include "seen_side.h"
 #include "sign_regions.h"
@@ -275,20 +276,31 @@ faceViewer (const OrientedPoints &points, const Viewer &viewer, std::vector<Eige
   return true;
 }
 
-/** \brief The one way in which a scan that is seen from one side can be oriented.
- * \return false where there is no such side
+/** \brief Have the normals look to the side that a scan is seen from, if there is one.
+ * \return false, and all is as before, where there is none
  */
 bool
-orientToOneSide (const OrientedPoints &points, const NeighborSearch &search, int k, const NormalOptions &options,
+orientToOneSide (const OrientedPoints &points, const Facets &facets, const NormalOptions &options,
                  std::vector<Eigen::Vector3f> &normals, Orientation &orientation)
 {
   std::optional<Eigen::Vector3f> view_point;
   if (options.has_view_point)
     view_point = (options.view_point - points.origin).cast<float> ();
-  const Facets facets = facetsOfNormals (points, search, SurfaceKind::OPEN, k, options.threads, normals);
   const auto viewer = findViewer (points, facets, view_point, Eigen::Vector3f (-points.origin.cast<float> ()));
-  orientation = options.has_view_point && viewer && !viewer->is_far ? Orientation::VIEW_POINT : Orientation::ONE_SIDE;
-  return viewer && faceViewer (points, *viewer, normals);
+  if (!viewer || !faceViewer (points, *viewer, normals))
+    return false;
+  orientation = options.has_view_point && !viewer->is_far ? Orientation::VIEW_POINT : Orientation::ONE_SIDE;
+  return true;
+}
+
+/** \brief Whether the two sides of a wall would not be taken for one noisy sheet. */
+bool
+tellsWalls (const OrientedPoints &points, const NeighborSearch &search, const Facets &of_scan, int threads)
+{
+  constexpr double ALIKE = 0.7; // noise of single sheets, beside that of all neighbours
+  constexpr double CLEAN = 0.1; // spacings
+  return of_scan.tolerance < CLEAN * of_scan.spacing ||
+         noiseOfSheets (points, search, of_scan.spacing, threads) > ALIKE * of_scan.tolerance;
 }
 
 } // namespace
@@ -298,10 +310,14 @@ orientNormals (const OrientedPoints &points, const NeighborSearch &search, int k
                std::vector<Eigen::Vector3f> &normals)
 {
   Orientation orientation = Orientation::VIEW_POINT;
+  const Facets of_scan = facetsOfNormals (points, search, SurfaceKind::OPEN, k, options.threads, normals);
+  const bool tells_walls = tellsWalls (points, search, of_scan, options.threads);
+  if (tells_walls && orientToOneSide (points, of_scan, options, normals, orientation))
+    return orientation;
   Survey known = survey (points, search, SurfaceKind::CLOSED, k, options.threads, normals);
   if (known.open > OPEN)
   {
-    if (orientToOneSide (points, search, k, options, normals, orientation))
+    if (!tells_walls && orientToOneSide (points, of_scan, options, normals, orientation))
       return orientation;
     known = survey (points, search, SurfaceKind::OPEN, k, options.threads, normals);
   }

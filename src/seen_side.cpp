@@ -68,14 +68,18 @@ isSeenBy (const OrientedPoints &points, const Facets &facets, const Viewer &view
 {
   constexpr double NEARLY_ALL = 0.85; // a sensor: 0.95; across closed surfaces and from inside of them 0.4 at most
   constexpr double FEW = 0.25, AS_MANY = 1.5;
+  constexpr std::size_t ENOUGH = 20000; // points
   ColumnCount single, several;
-  visitColumns (lookAtLayers (points, facets, viewer, columnWidth (points, facets.spacing, viewer)),
+  std::ptrdiff_t all = 0;
+  visitColumns (lookAtLayers (points, facets, viewer, columnWidth (points, facets.spacing, viewer),
+                              std::max<std::uint64_t> (1, points.size () / ENOUGH)),
                 [&] (const Crossing *begin, const Crossing *end)
                 {
+                  all += end - begin;
                   if (const int layers = countLayers (begin, end, facets.spacing); layers > 0)
                     (layers == 1 ? single : several).add (end - begin);
                 });
-  const double share = single.points / static_cast<double> (points.size ());
+  const double share = single.points / static_cast<double> (std::max<std::ptrdiff_t> (1, all));
   return share > NEARLY_ALL || (share > FEW && several.pointsPerColumn () < AS_MANY * single.pointsPerColumn () &&
                                 liesAcross (points, facets, viewer));
 }
