@@ -80,8 +80,15 @@ private:
   static std::int64_t
   numberOf (std::int64_t face, float a, float b)
   {
-    return (face * IN_A_ROW + static_cast<std::int64_t> (std::floor (a))) * IN_A_ROW +
-           static_cast<std::int64_t> (std::floor (b));
+    return (face * IN_A_ROW + wholeOf (a)) * IN_A_ROW + wholeOf (b);
+  }
+
+  /** \brief The whole number below; strays far out share the outermost columns. */
+  static std::int64_t
+  wholeOf (float a)
+  {
+    constexpr float FARTHEST = 0.49f * static_cast<float> (IN_A_ROW);
+    return static_cast<std::int64_t> (std::floor (std::clamp (a, -FARTHEST, FARTHEST)));
   }
 
   Viewer viewer_;
