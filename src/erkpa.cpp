@@ -125,7 +125,8 @@ reportPoints (const std::string &class_name, const Report &report, const Options
   else
     how << (report.orientation == Orientation::ONE_SIDE ? "to the side that all of them are seen from"
                                                         : "outwards, from neighbour to neighbour")
-        << (options.normals.has_view_point ? ", where the view point cannot have seen the surface" : "");
+        << (options.normals.has_view_point ? ", where the view point does not seem to have seen all of the surface"
+                                           : "");
   if (points.without_normal > 0)
     PCL_WARN ("[%s::reconstruct] %zu points have no usable normal: normals are estimated and oriented %s.\n",
               class_name.c_str (), points.without_normal, how.str ().c_str ());

@@ -20,12 +20,11 @@ constexpr int TERMS = 6;
 using Terms = Eigen::Matrix<double, TERMS, 1>;
 using Products = Eigen::Matrix<double, TERMS, TERMS>;
 
-/** \brief Weighted sums over points of what a HeightFit is from; two points at a time, as vectors of doubles hold. */
+/** \brief Weighted sums over points of what a HeightFit is from, of two points at a time, as vectors of doubles hold.
+ */
 class HeightSums
 {
 public:
-  using Pair = Eigen::Array2d;
-
   HeightSums ()
   {
     powers_.fill (Pair::Zero ());
@@ -33,17 +32,32 @@ public:
   }
 
   void
-  add (const Pair &x, const Pair &y, const Pair &z, const Pair &w)
+  add (const Eigen::Vector3f &p, double scale, float weight)
   {
-    const Pair wx = w * x, wy = w * y, xx = wx * x, xy = wx * y, yy = wy * y, xxx = xx * x, xxy = xx * y, xyy = xy * y,
-               yyy = yy * y;
-    const std::array<Pair, 15> all{w,   wx,  wy,      xx,      xy,      yy,      xxx,    xxy,
-                                   xyy, yyy, xxx * x, xxx * y, xxy * y, xyy * y, yyy * y};
-    for (std::size_t i = 0; i < all.size (); ++i)
-      powers_[i] += all[i];
-    for (std::size_t i = 0; i < TERMS; ++i)
-      of_heights_[i] += all[i] * z;
-    squares_ += w * z * z;
+    const auto place = static_cast<Eigen::Index> (used_++ % 2);
+    for (std::size_t a = 0; a < 3; ++a)
+      waiting_[a][place] = static_cast<double> (p[static_cast<Eigen::Index> (a)]) * scale;
+    waiting_[3][place] = static_cast<double> (weight);
+    if (place == 1)
+      addPair ();
+  }
+
+  /** \brief After the last point. */
+  void
+  complete ()
+  {
+    if (used_ % 2 == 0)
+      return;
+    for (Pair &pair : waiting_)
+      pair[1] = 0.0;
+    addPair ();
+  }
+
+  /** \brief Number of points. */
+  double
+  used () const
+  {
+    return static_cast<double> (used_);
   }
 
   /** \brief The sums of products of the terms. */
@@ -80,6 +94,25 @@ public:
   }
 
 private:
+  using Pair = Eigen::Array2d;
+
+  void
+  addPair ()
+  {
+    const auto &[x, y, z, w] = waiting_;
+    const Pair wx = w * x, wy = w * y, xx = wx * x, xy = wx * y, yy = wy * y, xxx = xx * x, xxy = xx * y, xyy = xy * y,
+               yyy = yy * y;
+    const std::array<Pair, 15> all{w,   wx,  wy,      xx,      xy,      yy,      xxx,    xxy,
+                                   xyy, yyy, xxx * x, xxx * y, xxy * y, xyy * y, yyy * y};
+    for (std::size_t i = 0; i < all.size (); ++i)
+      powers_[i] += all[i];
+    for (std::size_t i = 0; i < TERMS; ++i)
+      of_heights_[i] += all[i] * z;
+    squares_ += w * z * z;
+  }
+
+  std::size_t used_ = 0;
+  std::array<Pair, 4> waiting_; // x, y, z and the weight
   std::array<Pair, 15> powers_; // x^a y^b for a + b = 0, 1 .. 4, each rising with b
   std::array<Pair, TERMS> of_heights_;
   Pair squares_ = Pair::Zero ();
@@ -91,28 +124,13 @@ HeightFit::HeightFit (const std::vector<Eigen::Vector3f> &points, const std::vec
                       const Eigen::Vector3f &side, double spacing, double noise, bool curved)
 {
   constexpr double BEND = 0.15; // expected second derivative, in 1 / spacing
-  const double ridge = std::pow (noise / (BEND * spacing), 2) + 1e-6, inverse_spacing = 1.0 / spacing;
+  const double ridge = std::pow (noise / (BEND * spacing), 2) + 1e-6;
   setFrame (points, weights, side);
   HeightSums sums;
-  std::size_t used = 0;
-  HeightSums::Pair of_pair[4]; // x, y, z in spacings, and the weight
   for (std::size_t i = 0; i < points.size (); ++i)
     if (weights[i] > 0.0f)
-    {
-      const Eigen::Vector3f p = frame_ * (points[i] - center_);
-      const auto place = static_cast<Eigen::Index> (used++ % 2);
-      for (int a = 0; a < 3; ++a)
-        of_pair[a][place] = static_cast<double> (p[a]) * inverse_spacing;
-      of_pair[3][place] = static_cast<double> (weights[i]);
-      if (place == 1)
-        sums.add (of_pair[0], of_pair[1], of_pair[2], of_pair[3]);
-    }
-  if (used % 2 == 1)
-  {
-    for (HeightSums::Pair &pair : of_pair)
-      pair[1] = 0.0;
-    sums.add (of_pair[0], of_pair[1], of_pair[2], of_pair[3]);
-  }
+      sums.add (frame_ * (points[i] - center_), 1.0 / spacing, weights[i]);
+  sums.complete ();
   Products products = sums.products ();
   const Terms of_heights = sums.ofHeights ();
   const double total = products (0, 0);
@@ -124,8 +142,7 @@ HeightFit::HeightFit (const std::vector<Eigen::Vector3f> &points, const std::vec
   else
     heights.head<3> () = Eigen::Matrix3d (products.topLeftCorner<3, 3> ()).llt ().solve (of_heights.head<3> ());
   const double left = sums.squares () - heights.dot (of_heights) - ridge * heights.tail<3> ().squaredNorm ();
-  const auto count = static_cast<double> (used);
-  const double freedom = std::max (0.5, count - (curved ? TERMS : 3)) * total / std::max (1.0, count);
+  const double freedom = std::max (0.5, sums.used () - (curved ? TERMS : 3)) * total / std::max (1.0, sums.used ());
   deviation_ = static_cast<float> (spacing * std::sqrt (std::max (0.0, left / freedom)));
   weight_ = static_cast<float> (total);
   heights[0] *= spacing;

@@ -88,7 +88,7 @@ private:
   wholeOf (float a)
   {
     constexpr float FARTHEST = 0.49f * static_cast<float> (IN_A_ROW);
-    return static_cast<std::int64_t> (std::floor (std::clamp (a, -FARTHEST, FARTHEST)));
+    return static_cast<std::int64_t> (std::floor (a > -FARTHEST ? std::min (a, FARTHEST) : -FARTHEST));
   }
 
   Viewer viewer_;

@@ -47,6 +47,8 @@ estimateNormals (OrientedPoints &points, const PointLayout &layout, const Normal
 {
   if (options.k != 0 && options.k < 3)
     return {Status::INVALID_SETTING, "normals need at least 3 neighbours, or 0 for automatic"};
+  if (options.has_view_point && !options.view_point.allFinite ())
+    return {Status::INVALID_SETTING, "the view point must be finite"};
   const int k = options.k > 0 ? options.k : layout.k;
   const Eigen::Vector3f view_point = (options.view_point - points.origin).cast<float> ();
   std::vector<Eigen::Vector3f> estimated = fitPlanes (points, k, view_point, options.threads);

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <erkpa/oriented_points.h>
 
-#include "node_table.h"
 #include "parallel_collect.h"
 #include "repeated_points.h"
 #include "text.h"
@@ -11,7 +10,6 @@
 #include <algorithm>
 #include <atomic>
 #include <cmath>
-#include <memory>
 #include <numeric>
 #include <string>
 #include <utility>
@@ -186,17 +184,17 @@ normalOf (const PointView &view, int index)
 }
 
 /** \brief The values that all points have of one kind, \a count per point, for the chosen ones. */
-template <typename T, typename IndicesT>
+template <typename T>
 std::vector<T>
-choose (const std::vector<T> &values, std::size_t count, const IndicesT &chosen)
+choose (const std::vector<T> &values, std::size_t count, const std::vector<int> &chosen)
 {
   std::vector<T> result;
   if (values.empty ())
     return result;
   result.reserve (count * chosen.size ());
-  for (const auto i : chosen)
+  for (const int i : chosen)
   {
-    const auto first = values.begin () + static_cast<std::ptrdiff_t> (count) * static_cast<std::ptrdiff_t> (i);
+    const auto first = values.begin () + static_cast<std::ptrdiff_t> (count) * i;
     result.insert (result.end (), first, first + static_cast<std::ptrdiff_t> (count));
   }
   return result;
@@ -263,20 +261,6 @@ collectPoints (const PointView &view, OrientedPoints &points, PointCounts &count
   points.channels = view.channels;
   counts.without_normal = fillIn (view, threads, chosen, points);
   return {};
-}
-
-void
-sortInSpace (int threads, OrientedPoints &points)
-{
-  double spacing = 0.0;
-  const std::shared_ptr<const PointGrid> grid = makePointGrid (points.positions, threads, spacing);
-  const auto &order = grid->index ();
-  points.positions = choose (points.positions, 1, order);
-  points.normals = choose (points.normals, 1, order);
-  points.attributes = choose (points.attributes, static_cast<std::size_t> (points.channels), order);
-  points.confidences = choose (points.confidences, 1, order);
-  points.radii = choose (points.radii, 1, order);
-  points.shapes = choose (points.shapes, 1, order);
 }
 
 } // namespace erkpa

@@ -325,18 +325,23 @@ float
 PointGrid::takeNearest (std::size_t wanted, Places &ball, std::vector<std::pair<float, int>> &found) const
 {
   found.clear ();
-  if (wanted == 0 || ball.count < wanted)
-    return 0.0f;
-  ball.selection.assign (ball.squared.begin (), ball.squared.begin () + static_cast<std::ptrdiff_t> (ball.count));
-  const auto kth = ball.selection.begin () + static_cast<std::ptrdiff_t> (wanted - 1);
-  std::nth_element (ball.selection.begin (), kth, ball.selection.end ());
+  float farthest = HUGE_VALF;
+  if (wanted > 0 && wanted <= ball.count)
+  {
+    ball.selection.assign (ball.squared.begin (), ball.squared.begin () + static_cast<std::ptrdiff_t> (ball.count));
+    const auto kth = ball.selection.begin () + static_cast<std::ptrdiff_t> (wanted - 1);
+    std::nth_element (ball.selection.begin (), kth, ball.selection.end ());
+    farthest = *kth;
+  }
   for (std::size_t i = 0; i < ball.count; ++i)
-    if (ball.squared[i] <= *kth)
+    if (ball.squared[i] <= farthest)
       found.emplace_back (ball.squared[i], static_cast<int> (index_[ball.places[i]]));
   if (found.size () > wanted) // some are as far as the k-th
+  {
     std::nth_element (found.begin (), found.begin () + static_cast<std::ptrdiff_t> (wanted), found.end ());
-  found.resize (wanted);
-  return *kth;
+    found.resize (wanted);
+  }
+  return farthest;
 }
 
 NeighborSearch::ConstPtr

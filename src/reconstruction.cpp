@@ -3,6 +3,8 @@
 
 #include "flaps.h"
 #include "normal_flips.h"
+#include "point_grid.h"
+#include "spatial_order.h"
 #include "stage_clock.h"
 #include "support.h"
 #include "support_size.h"
@@ -19,6 +21,17 @@ namespace erkpa
 namespace
 {
 
+/** \brief Points will ask for their neighbours again and again: have these close by. */
+void
+sortInSpace (int threads, OrientedPoints &points, PointLayout &layout)
+{
+  const PointLayout before = layout;
+  reorder (before.grid->index ().data (), points);
+  layout = PointLayout (points, threads);
+  layout.k = before.k; // of a sample that has nothing to do with how the points lie
+  layout.k_within_faces = before.k_within_faces;
+}
+
 Outcome
 collect (const PointView &view, const SearchFactory &make_search, int threads,
          const std::shared_ptr<OrientedPoints> &shared, NeighborSearch::ConstPtr &search, PointLayout::ConstPtr &layout,
@@ -34,10 +47,11 @@ collect (const PointView &view, const SearchFactory &make_search, int threads,
                                         " distinct, finite points of " + std::to_string (report.points.read) + " read" +
                                         (report.points.no_confidence > 0 ? " that have a positive confidence" : "") +
                                         ": a surface needs at least " + std::to_string (Support::MIN_NODES + 1)};
+  const auto found = std::make_shared<PointLayout> (points, threads);
   if (report.points.without_normal > 0)
-    sortInSpace (threads, points); // every point will ask for its neighbours again and again
+    sortInSpace (threads, points, *found);
+  layout = found;
   search = make_search ? make_search (points) : makeKdTreeSearch ({shared, &shared->positions});
-  layout = std::make_shared<const PointLayout> (points, threads);
   return {};
 }
 

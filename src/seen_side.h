@@ -9,19 +9,17 @@
 namespace erkpa
 {
 
-/** \brief Who sees nearly all points of an open surface at once, so that the normals look there.
+/** \brief Who sees all of an open surface at once, so that the normals look there.
  *
  * A column along the line of sight holds one layer of such a scan. Where it holds more, as under trees and eaves of
  * land seen from the air, they share the points that a sensor gets there; sheets of a surface that turns back below
- * itself have as many each. Asked are the view point if it is known, else the origin if that lies outside, where
- * sensors put themselves, and at last somebody far out on the side that most normals look to: up, where both of its
- * sides would do.
+ * itself have as many each. Asked are the view point if it is known, else somebody far out on the side that most
+ * normals look to: up, where both of its sides would do.
  * \param[in] facets of the points, whose signs mean nothing
  * \param[in] view_point in the frame of the positions
- * \param[in] origin of the input's frame in that of the positions
+ * \return none where nobody does, or the points are too few to tell
  */
 std::optional<Viewer>
-findViewer (const OrientedPoints &points, const Facets &facets, const std::optional<Eigen::Vector3f> &view_point,
-            const Eigen::Vector3f &origin);
+findViewer (const OrientedPoints &points, const Facets &facets, const std::optional<Eigen::Vector3f> &view_point);
 
 } // namespace erkpa

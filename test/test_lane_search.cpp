@@ -4,6 +4,7 @@
 #include "field_tests.h"
 
 #include "lanes/lanes.h"
+#include "node_table.h"
 #include "smooth_links.h"
 
 #include <erkpa/point_layout.h>
@@ -223,4 +224,38 @@ TEST (SmoothLinks, AreNoLongerThanBridgesWhereNodesSeeEachOtherFartherOff)
   erkpa::SegmentationOptions options = segmentationFor (layout.spacing);
   options.separation_reach = 1.3 * options.bridge_reach * options.spacing;
   expectLinksOfBox (options, *points, layout);
+}
+
+TEST (GridSearch, FindsTheNearestPointsWhateverWasAskedBefore)
+{
+  const auto cloudOf = [] (float size)
+  {
+    std::vector<Eigen::Vector3f> points;
+    for (int i = 0; i < 900; ++i)
+      points.emplace_back (size * randomPoint (1.0).cast<float> ());
+    for (int i = 0; i < 100; ++i)
+      points.push_back (points[static_cast<std::size_t> (3 * i)] + Eigen::Vector3f (size, 0.0f, 0.0f)); // equally far
+    return points;
+  };
+  const std::array<std::vector<Eigen::Vector3f>, 2> clouds{cloudOf (1.0f), cloudOf (500.0f)};
+  const std::array<erkpa::NeighborSearch::ConstPtr, 2> searches{erkpa::makeGridSearch (clouds[0], 1),
+                                                                erkpa::makeGridSearch (clouds[1], 1)};
+  const std::array<int, 4> counts{1, 12, 200, 2000};
+  std::vector<int> found;
+  std::vector<float> squared;
+  for (std::size_t query = 0; query < 200; ++query)
+  {
+    const std::size_t c = query / 3 % 2;
+    const int k = counts[query % counts.size ()];
+    const Eigen::Vector3f x = clouds[c][query * 4];
+    searches[c]->nearestK (x, k, found, squared);
+    std::vector<float> all;
+    for (const Eigen::Vector3f &p : clouds[c])
+      all.push_back ((p - x).squaredNorm ());
+    std::sort (all.begin (), all.end ());
+    std::sort (squared.begin (), squared.end ());
+    ASSERT_EQ (found.size (), std::min<std::size_t> (static_cast<std::size_t> (k), all.size ()));
+    for (std::size_t i = 0; i < squared.size (); ++i)
+      ASSERT_NEAR (squared[i], all[i], 1e-5f * (1.0f + all[i])) << query;
+  }
 }

@@ -2,13 +2,16 @@
 #include "orientation_graph.h"
 #include "shapes.h"
 #include "sign_regions.h"
+#include "spatial_order.h"
 
 #include <erkpa/normals.h>
 
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <cstdint>
 
 using Eigen::Vector3d;
 using erkpa::NormalOptions;
@@ -276,13 +279,76 @@ TEST (Normals, OfALidOverASheetLookDownBelowIt)
   EXPECT_GT (shareThatAgrees (points, lid.normals), 0.999);
 }
 
-TEST (Normals, FaceTheOriginOutsideOfAScanThatIsSeenFromThere)
+TEST (Normals, OfLandAboveTheOriginLookUp)
 {
-  shapes::Samples scan = shapes::sheet (60, [] (double x, double y) { return 3.0 + 0.5 * x * x * y; });
+  const shapes::Samples land = shapes::sheet (60, [] (double x, double y) { return 3.0 + 0.5 * x * x * y; });
   Orientation orientation = Orientation::NONE;
-  const OrientedPoints points = estimate (scan, {}, orientation);
+  EXPECT_EQ (shareThatAgrees (estimate (land, {}, orientation), land.normals), 1.0);
   EXPECT_EQ (orientation, Orientation::ONE_SIDE);
-  EXPECT_EQ (shareThatAgrees (points, scan.normals), 0.0) << "below";
+}
+
+TEST (Normals, FaceASensorCloseAboveAFloorThatItSeesAtAGrazingAngle)
+{
+  for (const double height : {0.05, -0.05}) // below a ceiling, too
+  {
+    const shapes::Samples floor = shapes::sheet (80, [] (double, double) { return 0.0; });
+    Orientation orientation = Orientation::NONE;
+    const OrientedPoints points = estimate (floor, seenFrom ({0.0, -1.2, height}), orientation);
+    EXPECT_EQ (shareThatAgrees (points, floor.normals), height > 0.0 ? 1.0 : 0.0) << height;
+  }
+}
+
+TEST (Normals, OfWallsOfAHouseSeenFromAboveLookOutwards)
+{
+  shapes::Samples scene;
+  const shapes::Samples house = shapes::box (4000, {0.3, 0.2, 0.25}),
+                        land = shapes::sheet (100, [] (double, double) { return 0.0; });
+  for (std::size_t i = 0; i < house.size (); ++i)
+    if (house.normals[i].z () > -0.5)
+      scene.add (house.positions[i] + Vector3d (0.0, 0.0, 0.25), house.normals[i]);
+  const std::size_t of_house = scene.size ();
+  for (std::size_t i = 0; i < land.size (); ++i)
+    if (std::abs (land.positions[i].x ()) > 0.3 || std::abs (land.positions[i].y ()) > 0.2)
+      scene.add (land.positions[i], land.normals[i]);
+  Orientation orientation = Orientation::NONE;
+  const OrientedPoints points = estimate (scene, {}, orientation);
+  EXPECT_GT (of_house, 1000u);
+  EXPECT_GT (shareThatAgrees (points, scene.normals), 0.995);
+}
+
+TEST (Normals, OfABallOverLandPointOutOfItBelowAsWell)
+{
+  shapes::Samples scene = shapes::sphere (2000, 0.3), ball = scene;
+  for (Vector3d &p : scene.positions)
+    p += Vector3d (0.0, 0.0, 0.6);
+  const shapes::Samples land = shapes::sheet (130, [] (double, double) { return 0.0; });
+  for (std::size_t i = 0; i < land.size (); ++i)
+    scene.add (land.positions[i], land.normals[i]);
+  Orientation orientation = Orientation::NONE;
+  OrientedPoints points = estimate (scene, {}, orientation);
+  points.positions.resize (ball.size ());
+  points.normals.resize (ball.size ());
+  EXPECT_EQ (shareThatAgrees (points, ball.normals), 1.0);
+}
+
+TEST (Normals, OfFewPointsOfAClosedSurfacePointOutwards)
+{
+  for (const int count : {40, 80, 150})
+  {
+    const shapes::Samples sphere = shapes::sphere (count);
+    Orientation orientation = Orientation::NONE;
+    EXPECT_EQ (shareThatAgrees (estimate (sphere, {}, orientation), sphere.normals), 1.0) << count;
+    EXPECT_EQ (orientation, Orientation::PROPAGATION);
+  }
+}
+
+TEST (Normals, AreIndifferentToAViewPointThatIsFartherThanFloatsCanTell)
+{
+  const shapes::Samples sphere = shapes::sphere (2000);
+  Orientation orientation = Orientation::NONE;
+  for (const double far : {1e8, 1e20, 1e300})
+    EXPECT_EQ (shareThatAgrees (estimate (sphere, seenFrom ({far, 1.0, 1.0}), orientation), sphere.normals), 1.0)
+        << far;
 }
 
 TEST (Normals, OfTheOuterSideOfHalfASphereLookOutwards)
@@ -291,7 +357,7 @@ TEST (Normals, OfTheOuterSideOfHalfASphereLookOutwards)
   const shapes::Samples sphere = shapes::sphere (6000);
   for (std::size_t i = 0; i < sphere.size (); ++i)
     if (sphere.positions[i].x () < -0.3)
-      half.add (sphere.positions[i] + Vector3d (0.0, 0.0, 5.0), sphere.normals[i]); // the origin sees it from the rim
+      half.add (sphere.positions[i], sphere.normals[i]);
   Orientation orientation = Orientation::NONE;
   EXPECT_EQ (shareThatAgrees (estimate (half, {}, orientation), half.normals), 1.0);
 }
@@ -311,22 +377,84 @@ TEST (Normals, OfAScanAreTurnedLikeThoseThatWereGiven)
   EXPECT_EQ (shareThatAgrees (points, sheet.normals), 0.0);
 }
 
+/** \brief A square grid whose nodes all have the same sign, as links say in one direction only, but for a wrong one. */
+std::vector<erkpa::SignedLink>
+linksOfGrid (int side)
+{
+  std::vector<erkpa::SignedLink> links;
+  for (int y = 0; y < side; ++y)
+    for (int x = 0; x < side; ++x)
+    {
+      const int node = side * y + x;
+      if (x + 1 < side)
+        links.push_back ({node, node + 1, x == 9 && y == 12 ? -0.9f : 0.6f});
+      if (y + 1 < side)
+        links.push_back ({node, node + side, 0.6f});
+    }
+  return links;
+}
+
 TEST (SignRegions, AreTurnedWhereMostLinksAroundThemSpeakAgainstTheirSigns)
 {
   constexpr int SIDE = 30;
-  std::vector<erkpa::SignedLink> links; // a square grid, all nodes of the same sign, but for one link that is wrong
-  const auto node = [] (int x, int y) { return SIDE * y + x; };
-  for (int y = 0; y < SIDE; ++y)
-    for (int x = 0; x < SIDE; ++x)
-      for (const auto &[dx, dy] : {std::pair (-1, 0), std::pair (1, 0), std::pair (0, -1), std::pair (0, 1)})
-        if (x + dx >= 0 && x + dx < SIDE && y + dy >= 0 && y + dy < SIDE)
-          links.push_back ({node (x, y), node (x + dx, y + dy), x == 10 && y == 12 && dx == -1 ? -0.9f : 0.6f});
+  const std::vector<erkpa::SignedLink> links = linksOfGrid (SIDE);
   std::vector<char> flips (SIDE * SIDE + 1, 0);
   for (int y = 10; y < 15; ++y)
     for (int x = 10; x < 14; ++x)
-      flips[static_cast<std::size_t> (node (x, y))] = 1;
-  erkpa::turnRegions (links, links.size (), flips);
+      flips[static_cast<std::size_t> (SIDE * y + x)] = 1;
+  erkpa::turnRegions (links, flips);
   EXPECT_EQ (std::count (flips.begin (), flips.end (), 1), 0);
-  erkpa::turnRegions (links, links.size (), flips);
+  erkpa::turnRegions (links, flips);
   EXPECT_EQ (std::count (flips.begin (), flips.end (), 1), 0) << "what is right stays";
+}
+
+TEST (SignRegions, OnlyRaiseTheAgreementOfAllLinksWhereMuchIsContradictory)
+{
+  constexpr int SIDE = 60;
+  std::mt19937 random (5);
+  std::uniform_real_distribution<float> unit (0.0f, 1.0f);
+  std::vector<erkpa::SignedLink> links = linksOfGrid (SIDE);
+  for (erkpa::SignedLink &link : links)
+    link.weight *= unit (random) < 0.3f ? -unit (random) : 1.0f;
+  std::vector<char> flips (SIDE * SIDE + 1, 0);
+  for (char &flip : flips)
+    flip = unit (random) < 0.2f ? 1 : 0;
+  const auto agreement = [&]
+  {
+    double sum = 0.0;
+    for (const erkpa::SignedLink &link : links)
+      sum += flips[static_cast<std::size_t> (link.from)] == flips[static_cast<std::size_t> (link.to)] ? link.weight
+                                                                                                      : -link.weight;
+    return sum;
+  };
+  for (double before = agreement (), call = 0; call < 3; before = agreement (), ++call)
+  {
+    erkpa::turnRegions (links, flips);
+    EXPECT_GE (agreement (), before);
+  }
+}
+
+TEST (SpatialOrder, TakesAllThatAPointHasAlong)
+{
+  OrientedPoints points;
+  points.channels = 3;
+  for (int i = 0; i < 4; ++i)
+  {
+    const auto v = static_cast<float> (i);
+    points.positions.emplace_back (v, 0.0f, 0.0f);
+    points.normals.emplace_back (0.0f, v, 0.0f);
+    points.confidences.push_back (v);
+    points.attributes.insert (points.attributes.end (), {v, v + 10.0f, v + 20.0f});
+  }
+  const std::array<std::uint32_t, 4> order{2, 0, 3, 1};
+  erkpa::reorder (order.data (), points);
+  for (std::size_t i = 0; i < order.size (); ++i)
+  {
+    const auto v = static_cast<float> (order[i]);
+    EXPECT_EQ (points.positions[i].x (), v);
+    EXPECT_EQ (points.normals[i].y (), v);
+    EXPECT_EQ (points.confidences[i], v);
+    EXPECT_EQ (points.attributes[3 * i + 2], v + 20.0f);
+  }
+  EXPECT_TRUE (points.radii.empty ());
 }

@@ -156,6 +156,7 @@ public:
   std::vector<ShapeFunction>
   shapeFunctions (const Eigen::Vector3d &x) const;
 
+  /** \brief The nodes. Those of a cloud some of whose normals were estimated lie in another order than there. */
   const OrientedPoints &
   points () const
   {

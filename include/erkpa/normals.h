@@ -22,7 +22,7 @@ enum class Orientation
 {
   NONE,       ///< they were given, and none but single ones were turned
   VIEW_POINT, ///< towards the view point
-  ONE_SIDE,   ///< the view point is unknown or cannot have seen the surface, but all of it is seen from one side
+  ONE_SIDE,   ///< nearly all is seen from far out on one side, not from the view point
   PROPAGATION ///< at least in part from neighbour to neighbour, outwards: the view point is unknown or cannot
               ///< have seen the surface
 };

@@ -75,13 +75,4 @@ struct PointCounts
 Outcome
 collectPoints (const PointView &view, OrientedPoints &points, PointCounts &counts, int threads = 0);
 
-/** \brief Bring the points into an order in which those that follow each other are close together.
- *
- * Where every point asks for its neighbours, these are then at hand: a large cloud in random order takes three times
- * as long.
- * \param[in] threads 0 = all processors; the order does not depend on it
- */
-void
-sortInSpace (int threads, OrientedPoints &points);
-
 } // namespace erkpa
